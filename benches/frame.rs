@@ -25,10 +25,7 @@ fn crowd(count: u32, profile: &str) -> Simulation {
     let mut scene = Scene::default();
     let group = scene.add_group(Group {
         counted: false,
-        ..Group::new(
-            "crowd",
-            catalog::named(profile, &parameters).unwrap().unwrap(),
-        )
+        ..Group::new("crowd", catalog::named(profile, &parameters).unwrap())
     });
     let places = grid.positions(1, 0);
     scene.agents = places.map(|p| NewAgent::at(p, p, group)).collect();

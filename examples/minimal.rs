@@ -1,12 +1,6 @@
 //! Uses the engine as a library: builds a scene, runs it, reads densities.
 
-use sandbox::engine::agents::NewAgent;
-use sandbox::engine::geometry::Polygon;
-use sandbox::engine::math::Vector;
-use sandbox::engine::placement::Grid;
-use sandbox::engine::scene::{Group, Scene};
-use sandbox::engine::simulation::Simulation;
-use sandbox::scenario::catalog::{self, Parameters};
+use sandbox::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A pillar 1 m before the goal, and 100 people walking to that goal.
@@ -15,10 +9,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut scene = Scene::with_obstacles(vec![pillar]);
     let group = scene.add_group(Group {
         removal_radius: Some(0.5),
-        ..Group::new(
-            "visitors",
-            catalog::named("sph", &Parameters::default()).ok_or("no such profile")??,
-        )
+        ..Group::new("visitors", catalog::named("sph", &Parameters::default())?)
     });
     let grid = Grid {
         min: Vector::new(0.0, 0.0),

@@ -2,14 +2,7 @@
 
 use std::sync::Arc;
 
-use sandbox::engine::agents::NewAgent;
-use sandbox::engine::breakdown::Breakdown;
-use sandbox::engine::forces::own::Force;
-use sandbox::engine::frame::Frame;
-use sandbox::engine::math::Vector;
-use sandbox::engine::scene::{Group, Scene};
-use sandbox::engine::simulation::Simulation;
-use sandbox::scenario::catalog::{self, Parameters};
+use sandbox::prelude::*;
 
 /// Ground that rises along x between two places.
 #[derive(Debug)]
@@ -25,6 +18,15 @@ impl Force for Slope {
         "slope"
     }
 
+    // The slope pushes equally at all places on it and at all velocities: it does not limit the time step.
+    fn stiffness(&self) -> f64 {
+        0.0
+    }
+
+    fn friction(&self) -> f64 {
+        0.0
+    }
+
     fn acceleration(&self, frame: &Frame, i: usize) -> Vector {
         let x = frame.agents.position[i].x;
         let is_on_it = (self.x[0]..self.x[1]).contains(&x);
@@ -38,10 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut scene = Scene::default();
     let group = scene.add_group(Group {
         removal_radius: Some(0.5),
-        ..Group::new(
-            "walkers",
-            catalog::named("sph", &Parameters::default()).ok_or("no such profile")??,
-        )
+        ..Group::new("walkers", catalog::named("sph", &Parameters::default())?)
     });
     let goal = Vector::new(30.0, 0.0);
     scene.agents = vec![NewAgent::at(Vector::zeros(), goal, group)];

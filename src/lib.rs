@@ -7,6 +7,31 @@
 //! in these docs are that paper's. SI units; mass is dimensionless, 1 = an average person, so a density
 //! is in persons per square meter, P/m².
 //!
+//! Fifty people who start close together:
+//!
+//! ```
+//! use sandbox::prelude::*;
+//!
+//! let mut scene = Scene::default();
+//! let sph = catalog::named("sph", &Parameters::default())?;
+//! let crowd = scene.add_group(Group::new("crowd", sph));
+//! let goal = Vector::new(20.0, 0.0);
+//! for k in 0..50 {
+//!     let place = Vector::new(0.4 * f64::from(k % 10), 0.4 * f64::from(k / 10));
+//!     scene.agents.push(NewAgent::at(place, goal, crowd));
+//! }
+//! let mut simulation = Simulation::new(scene)?;
+//! while simulation.frame().clock.time() < 2.0 {
+//!     simulation.step()?;
+//! }
+//! let density = &simulation.evaluate()?.fields.density;
+//! println!("{:.2} P/m² at most", density.iter().copied().fold(0.0, f64::max));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`Scenario::load`](scenario::Scenario::load) reads the same from a file, and [`Run`](runs::drive::Run) simulates it
+//! to its end. The folder `examples/` has a crowd behind a pillar and a force from outside the crate.
+//!
 //! | paper | here | | paper | here |
 //! |---|---|---|---|---|
 //! | O_k | [`Wall`](engine::geometry::Wall) | | K^goal, K^ag, K^obs | `goal_scale`, `agent_stiffness`, `wall_stiffness` |
@@ -28,8 +53,29 @@ pub use sandbox_scenario::{analysis, engine, runs, scenario};
 #[cfg(feature = "program")]
 pub mod output;
 
+// Public only because the tests, the experiments, the Python package and `main.rs` are crates of their own.
 #[cfg(feature = "program")]
+#[doc(hidden)]
 pub mod lab;
 
 #[cfg(feature = "program")]
+#[doc(hidden)]
 pub mod cli;
+
+/// What most users of the library need: `use sandbox::prelude::*;`.
+pub mod prelude {
+    pub use crate::engine::agents::NewAgent;
+    pub use crate::engine::breakdown::Breakdown;
+    pub use crate::engine::clock::Clock;
+    pub use crate::engine::forces::own::Force;
+    pub use crate::engine::frame::Frame;
+    pub use crate::engine::geometry::Polygon;
+    pub use crate::engine::math::Vector;
+    pub use crate::engine::placement::Grid;
+    pub use crate::engine::profile::{Blend, BlendStep, Navigation, Profile};
+    pub use crate::engine::scene::{Group, Integrator, Region, Scene};
+    pub use crate::engine::simulation::{Fault, Outcome, Simulation};
+    pub use crate::runs::drive::{End, Observer, Run};
+    pub use crate::scenario::catalog::{self, Parameters};
+    pub use crate::scenario::{Scenario, ScenarioError, Setting};
+}

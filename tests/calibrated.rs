@@ -43,15 +43,14 @@ fn calibrated_profiles_have_the_fitted_parameters_of_their_study_within_its_boun
 #[test]
 fn settings_override_the_parameters_of_a_calibrated_profile() {
     for profile in calibrated::all() {
-        let whole = catalog::named(profile.name, &Parameters::default());
-        let whole = whole.unwrap().unwrap();
+        let whole = catalog::named(profile.name, &Parameters::default()).unwrap();
         let base = catalog::named(profile.base, &profile.parameters);
-        assert_eq!(whole.sph, base.unwrap().unwrap().sph);
+        assert_eq!(whole.sph, base.unwrap().sph);
         let changed = Parameters {
             rest_density_max: Some(4.5),
             ..Parameters::default()
         };
-        let changed = catalog::named(profile.name, &changed).unwrap().unwrap();
+        let changed = catalog::named(profile.name, &changed).unwrap();
         assert_eq!(changed.sph.rest_density_max, 4.5);
         assert_eq!(changed.steps(), whole.steps());
     }

@@ -333,6 +333,14 @@ impl Force for Wind {
         "wind"
     }
 
+    fn stiffness(&self) -> f64 {
+        0.0
+    }
+
+    fn friction(&self) -> f64 {
+        0.0
+    }
+
     fn needs_density(&self) -> bool {
         self.reads_density
     }

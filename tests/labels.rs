@@ -6,6 +6,8 @@ use serde_json::json;
 
 use crate::common::program::{run_json, text};
 use crate::common::recording::Recording;
+use sandbox::engine::math::Vector;
+use sandbox::output::labels::{AROUND, Labels, Placed, Screen};
 
 /// The names in a recording: texts and the points above which they are centered.
 fn names(recording: &Recording) -> Vec<(String, [f64; 2])> {
@@ -126,4 +128,31 @@ fn the_stage_has_a_view_if_there_are_two_and_titles_have_round_numbers() {
     let (_, titles) = recorded(text(&path), &given);
     let has = |title: &str| titles.iter().any(|other| other == title);
     assert!(has("Density 0.123–6.64 P/m²"), "{titles:?}");
+}
+
+#[test]
+fn labels_of_one_point_never_overlap_and_stay_inside() {
+    let [least, most] = [Vector::zeros(), Vector::new(10.0, 10.0)];
+    let screen = Screen {
+        inside: [least, most],
+        scale: 40.0,
+        height: 9.6,
+        width: |text| 5.0 * text.len() as f64,
+    };
+    let mut labels = Labels::new(screen, Vec::new());
+    let spots = AROUND.map(|side| (Vector::new(5.0, 5.0), side));
+    for k in 0..60 {
+        labels.add(&format!("label {k}"), [0; 3], &spots);
+    }
+    let placed = labels.into_placed();
+    assert!(placed.len() > 12, "{}", placed.len());
+    for (k, Placed { around, .. }) in placed.iter().enumerate() {
+        let [low, high] = around;
+        assert!(low.x >= least.x && low.y >= least.y && high.x <= most.x && high.y <= most.y);
+        for other in &placed[..k] {
+            let [l, h] = other.around;
+            let apart = h.x <= low.x || high.x <= l.x || h.y <= low.y || high.y <= l.y;
+            assert!(apart);
+        }
+    }
 }

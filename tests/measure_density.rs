@@ -225,11 +225,11 @@ fn the_field_at_a_person_is_the_persons_density() {
     let site = Site::new(vec![rectangle([-5.0, 5.0], [-1.0, 0.0])]);
     let (measured, moments) = measured(&tracks(10.0, &rows), &site, &options());
     let grid = &measured.fields.grid;
-    let at = (0..grid.cells()).find(|&k| (grid.center(k) - vector(0.125, 0.125)).norm() < 1e-9);
+    let at = (0..grid.len()).find(|&k| (grid.center(k) - vector(0.125, 0.125)).norm() < 1e-9);
     let means: Vec<_> = measured.fields.means(1).collect();
     let field = means[at.unwrap()].unwrap().density;
     assert!((field - moments[0].people[0].density).abs() < 1e-12 * field);
-    let inside = (0..grid.cells()).filter(|&k| site.is_inside(grid.center(k)));
+    let inside = (0..grid.len()).filter(|&k| site.is_inside(grid.center(k)));
     assert!(inside.clone().count() > 0 && inside.clone().all(|k| means[k].is_none()));
 }
 

@@ -41,6 +41,7 @@ mod seeing;
 mod stability;
 mod stress;
 mod study_robustness;
+mod suites;
 mod sweep;
 mod sweep_pictures;
 mod sweep_program;

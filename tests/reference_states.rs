@@ -76,12 +76,7 @@ fn evaluated(state: &State) -> Simulation {
     };
     let group = scene.add_group(Group {
         counted: false,
-        ..Group::new(
-            "all",
-            catalog::named(&state.profile, &parameters)
-                .unwrap()
-                .unwrap(),
-        )
+        ..Group::new("all", catalog::named(&state.profile, &parameters).unwrap())
     });
     scene.agents = state
         .agents

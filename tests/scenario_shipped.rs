@@ -125,7 +125,7 @@ fn the_concert_has_a_hundred_rows_of_a_hundred_people_and_a_push() {
         ..Parameters::default()
     };
     let group = &scenario.scene.groups[0];
-    assert_eq!(Some(Ok(group.blend.clone())), catalog::named("sph", &paper));
+    assert_eq!(Ok(group.blend.clone()), catalog::named("sph", &paper));
     assert_eq!(group.removal_radius, None);
     let push = &scenario.scene.pushes[0];
     assert_eq!((push.at, push.lasting), (150.0, 0.5));
@@ -213,7 +213,7 @@ fn a_blend_written_in_full_equals_the_named_blend() {
         ..Parameters::default()
     };
     let blend = &scenario.scene.groups[0].blend;
-    assert_eq!(Some(Ok(blend.clone())), catalog::named("sf->sph", &softer));
+    assert_eq!(Ok(blend.clone()), catalog::named("sf->sph", &softer));
     assert_eq!(scenario.profile_name, "sf->sph");
 }
 
@@ -230,7 +230,7 @@ fn scenario_wide_parameters_override_those_of_profiles() {
         ..Parameters::default()
     };
     let blend = scenario.scene.groups[0].blend.clone();
-    assert_eq!(Some(Ok(blend)), catalog::named("sph", &expected));
+    assert_eq!(Ok(blend), catalog::named("sph", &expected));
 }
 
 #[test]

@@ -1,15 +1,104 @@
 //! The linear theory of sound compared with the engine: a patch of a hexagonal lattice is displaced by a small
 //! plane wave, which accelerates the agent in its middle.
 
+use std::f64::consts::PI;
+
 use crate::common::{acceleration, blend_with, evaluated, person, scene, vector};
-use sandbox::analysis::sound::{self, Lattice};
+use sandbox::analysis::sound;
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::density::SphParameters;
+use sandbox::engine::kernel;
+use sandbox::engine::math::Vector;
 use sandbox::engine::scene::Region;
 use sandbox::scenario::catalog::Parameters;
 
 /// The radius of the patch, meters. It includes the neighbors of the middle agent and their neighbors.
 const PATCH: f64 = 2.6;
+
+/// A uniform crowd of agents of mass 1 on a hexagonal lattice, with rows along the x axis: the linear theory without
+/// the long-wave limit, because every sum is taken over the lattice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Lattice {
+    /// Distance between nearest neighbors, meters.
+    spacing: f64,
+    /// D_i + D_j, meters.
+    reach: f64,
+    /// k, ρ⁰max and h are read.
+    sph: SphParameters,
+    /// K^ag, 1/s².
+    agent_stiffness: f64,
+}
+
+impl Lattice {
+    /// r_ij of all neighbors within h of an agent.
+    fn neighbors(&self) -> Vec<Vector> {
+        let h = self.sph.support_radius;
+        let most = (2.0 * h / self.spacing).ceil() as i32;
+        let mut found = Vec::new();
+        for row in -most..=most {
+            for column in -most..=most {
+                let x = self.spacing * (f64::from(column) + 0.5 * f64::from(row.rem_euclid(2)));
+                let y = self.spacing * 0.75_f64.sqrt() * f64::from(row);
+                let r = Vector::new(x, y);
+                if (row, column) != (0, 0) && r.norm() < h {
+                    found.push(r);
+                }
+            }
+        }
+        found
+    }
+
+    /// The SPH density at every agent (Eq. 9), P/m².
+    fn density(&self) -> f64 {
+        let h = self.sph.support_radius;
+        let others = self.neighbors().into_iter();
+        let others = others.map(|r| kernel::density(r.norm_squared(), h));
+        kernel::density(0.0, h) + others.sum::<f64>()
+    }
+
+    /// ω² in 1/s² of a longitudinal wave along the x axis with wavenumber q in 1/m. Valid if the density is above
+    /// ρ⁰max.
+    fn frequency_squared(&self, q: f64) -> f64 {
+        let (h, k) = (self.sph.support_radius, self.sph.gas_constant);
+        let density = self.density();
+        let pressure = self.sph.pressure(density, self.sph.rest_density_max);
+        let volume = 1.0 / density;
+        let (mut compression, mut gradient, mut curvature, mut contact) = (0.0, 0.0, 0.0, 0.0);
+        for r in self.neighbors() {
+            let (sine, rest) = ((q * r.x).sin(), 1.0 - (q * r.x).cos());
+            compression += density_gradient(r, h).x * sine;
+            gradient += kernel::pressure_gradient(r, h).x * sine;
+            curvature += pressure_curvature(r, h) * rest;
+            if r.norm() < self.reach {
+                contact += sound::stiffness(r, self.reach) * rest;
+            }
+        }
+        let both = volume * compression * gradient / density;
+        let of_density = both * (k / 2.0 - pressure / density);
+        let of_kernel = pressure * volume * curvature / density;
+        of_density + of_kernel + self.agent_stiffness * contact
+    }
+
+    /// ω/q in m/s.
+    fn speed(&self, q: f64) -> f64 {
+        self.frequency_squared(q).max(0.0).sqrt() / q
+    }
+}
+
+/// ∇W of Eq. 13, 1/m³.
+fn density_gradient(r: Vector, h: f64) -> Vector {
+    let rest = (h * h - r.norm_squared()).max(0.0);
+    r * (-24.0 / (PI * h.powi(8)) * rest * rest)
+}
+
+/// ∂/∂x of the x component of Eq. 14, 1/m⁴.
+fn pressure_curvature(r: Vector, h: f64) -> f64 {
+    let distance = r.norm();
+    let along = (r.x / distance).powi(2);
+    let slope = kernel::pressure_gradient(r, h).dot(&r) / distance;
+    let bend = 60.0 / (PI * h.powi(5)) * (h - distance).max(0.0);
+    bend * along + slope / distance * (1.0 - along)
+}
 
 fn lattice(spacing: f64, gas_constant: f64, agent_stiffness: f64) -> Lattice {
     Lattice {

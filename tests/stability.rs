@@ -2,8 +2,9 @@
 
 use crate::common::program;
 use nalgebra::{Matrix3, Vector3};
-use sandbox::analysis::stability::{Constants, FITTED, Mode, Scheme, time_step};
+use sandbox::analysis::stability::{Constants, FITTED, Scheme, time_step};
 use sandbox::engine::clock::PAPER_COARSE_STEP;
+use sandbox::engine::forces::rates::Rates;
 use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::lab::stress::{Cell, Condition, Detail, Law, Limit, Rest, fit};
 use sandbox::scenario::Scenario;
@@ -299,11 +300,11 @@ fn growth(mut frames: Matrix3<f64>) -> f64 {
 }
 
 /// Rates of which only those of a corner are not zero: its spring and the friction in front of it.
-fn corner(omega_squared: f64, gamma: f64) -> Mode {
-    Mode {
+fn corner(omega_squared: f64, gamma: f64) -> Rates {
+    Rates {
         corner: omega_squared,
         correction: gamma,
-        ..Mode::default()
+        ..Rates::default()
     }
 }
 
@@ -357,7 +358,7 @@ fn steps_are_rounded_down_to_three_digits() {
         (Scheme::SemiImplicit, FITTED.margin, 0.085),
         (Scheme::VelocityVerlet, FITTED.verlet_margin, 0.088),
     ] {
-        assert_eq!(Mode::default().time_step(scheme), longest);
+        assert_eq!(Rates::default().time_step(scheme), longest);
         for k in 0..500 {
             let mode = corner(1e3 * 1.03_f64.powi(k), f64::from(k));
             let (step, exact) = (mode.time_step(scheme), mode.largest_step(scheme, &FITTED));

@@ -1,38 +1,28 @@
 //! Validation: scenes and their runs, means over seeds, and the command.
 
-use std::collections::BTreeSet;
 use std::fs;
 
 use crate::common::program::{refused, run, stderr, text};
-use sandbox::lab::suite::Check;
-use sandbox::lab::sweep::Study;
-use sandbox::lab::validate::VALIDATION;
-
-#[test]
-fn the_scenes_use_all_runs_of_the_study_and_no_others() {
-    let study = Study::built_in(VALIDATION.name, None, None).unwrap();
-    let known: BTreeSet<&str> = study.cells.iter().filter_map(|cell| cell.label()).collect();
-    let used: BTreeSet<&str> = VALIDATION
-        .without_data()
-        .flat_map(|case| case.runs)
-        .copied()
-        .collect();
-    assert_eq!(used, known);
-    let profiles = serde_json::json!(VALIDATION.profiles);
-    assert_eq!(study.document["grid"]["profile"], profiles);
-    for case in VALIDATION.all() {
-        assert!(case.runs.contains(&case.picture.0), "{}", case.id);
-    }
-}
+use sandbox::lab::suite::{Expected, Judgment};
 
 #[test]
 fn a_value_passes_within_the_tolerance_of_the_measured_one() {
-    let check = |value| Check::near("flow", value, (2.0, 0.06));
-    assert!(check(Some(2.12)).is_passed() && check(Some(1.88)).is_passed());
-    assert!(!check(Some(2.13)).is_passed() && !check(Some(1.87)).is_passed());
-    assert!(!check(None).is_passed());
-    assert!((check(Some(3.0)).error().unwrap() - 0.5).abs() < 1e-12);
-    assert_eq!(check(None).expected_written(), "2 ± 6 %");
+    let expected = Expected::Near {
+        value: Some(2.0),
+        tolerance: 0.06,
+    };
+    let judgment = |value| Judgment {
+        quantity: "flow".to_owned(),
+        value,
+        expected,
+        run: None,
+    };
+    let is_passed = |value| judgment(Some(value)).is_passed();
+    assert!(is_passed(2.12) && is_passed(1.88));
+    assert!(!is_passed(2.13) && !is_passed(1.87));
+    assert!(!judgment(None).is_passed());
+    assert!((judgment(Some(3.0)).error().unwrap() - 0.5).abs() < 1e-12);
+    assert_eq!(expected.to_string(), "2 ± 6 %");
 }
 
 #[test]

@@ -1,93 +1,78 @@
 //! Verification: cases and their runs, judgments, and the command.
 
-use std::collections::BTreeSet;
 use std::fs;
 
 use crate::common::program::{refused, run, stderr, text};
-use sandbox::lab::suite::{Case, Check, Finding, Report};
-use sandbox::lab::sweep::Study;
-use sandbox::lab::verify::VERIFICATION;
+use sandbox::lab::suite::{Case, Expected, Finding, Judgment, Report, Suite};
 
-fn named(id: &str) -> &'static Case {
-    VERIFICATION.all().find(|case| case.id == id).unwrap()
+fn verification() -> Suite {
+    Suite::built_in("verification").unwrap()
+}
+
+fn named<'a>(suite: &'a Suite, name: &str) -> &'a Case {
+    suite.cases.iter().find(|case| case.name == name).unwrap()
 }
 
 #[test]
-fn the_cases_use_all_runs_of_the_study_and_no_others() {
-    let study = Study::built_in("verification", None, None).unwrap();
-    let known: BTreeSet<&str> = study.cells.iter().filter_map(|cell| cell.label()).collect();
-    let used: BTreeSet<&str> = VERIFICATION
-        .all()
-        .flat_map(|case| case.runs)
-        .copied()
-        .collect();
-    assert_eq!(used, known);
-    assert_eq!(
-        study.document["grid"]["profile"],
-        serde_json::json!(VERIFICATION.profiles)
-    );
-    for case in VERIFICATION.all() {
-        assert!(case.runs.contains(&case.picture.0), "{}", case.id);
-        let mut misses = case.misses.iter();
-        assert!(
-            misses.all(|(profile, why)| VERIFICATION.profiles.contains(profile) && !why.is_empty())
-        );
-    }
-    let ids: BTreeSet<&str> = VERIFICATION.all().map(|case| case.id).collect();
-    assert_eq!(ids.len(), VERIFICATION.all().count());
-}
-
-#[test]
-fn cases_are_chosen_by_id_or_number() {
-    let ids = |names: &[&str]| -> Vec<&str> {
+fn cases_are_chosen_by_name_or_number() {
+    let suite = verification();
+    let names = |names: &[&str]| -> Vec<&str> {
         let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
-        VERIFICATION
-            .chosen(&names)
-            .unwrap()
-            .iter()
-            .map(|case| case.id)
-            .collect()
+        let chosen = suite.chosen(&names).unwrap().into_iter();
+        chosen.map(|case| case.name.as_str()).collect()
     };
-    assert_eq!(ids(&["12"]), ["12a", "12b", "12c", "12d"]);
-    assert_eq!(ids(&["iso1", "1"]), ["1", "iso1"]);
-    assert_eq!(ids(&["12c"]), ["12c"]);
-    assert_eq!(ids(&[]).len(), VERIFICATION.all().count());
-    assert_eq!(
-        VERIFICATION.chosen(&["6".to_owned(), "8".to_owned()]).err(),
-        Some("8".to_owned())
-    );
+    assert_eq!(names(&["12"]), ["12a", "12b", "12c", "12d"]);
+    assert_eq!(names(&["iso1", "1"]), ["1", "iso1"]);
+    assert_eq!(names(&["12c"]), ["12c"]);
+    assert_eq!(names(&[]).len(), suite.cases.len());
+    let unknown = suite.chosen(&["6".to_owned(), "8".to_owned()]).err();
+    assert_eq!(unknown, Some("8".to_owned()));
+}
+
+fn judgment(value: Option<f64>, expected: Expected) -> Judgment {
+    Judgment {
+        quantity: "time [s]".to_owned(),
+        value,
+        expected,
+        run: None,
+    }
 }
 
 #[test]
 fn a_value_passes_inside_of_its_range_ends_included() {
-    let between = |value| Check::between("x", value, 1.0, 2.0).is_passed();
+    let between = |value| judgment(value, Expected::Between([1.0, 2.0])).is_passed();
     assert!(between(Some(1.0)) && between(Some(2.0)) && between(Some(1.5)));
     assert!(!between(Some(0.999)) && !between(Some(2.001)) && !between(None));
     assert!(!between(Some(f64::NAN)));
-    assert!(Check::at_most("x", Some(-1e9), 0.0).is_passed());
-    assert!(!Check::at_least("x", Some(-1e-3), 0.0).is_passed());
-    assert!(Check::reported("x", None).is_passed());
+    let at_most = Expected::Between([f64::NEG_INFINITY, 0.0]);
+    assert!(judgment(Some(-1e9), at_most).is_passed());
+    let at_least = Expected::Between([0.0, f64::INFINITY]);
+    assert!(!judgment(Some(-1e-3), at_least).is_passed());
+    assert!(judgment(None, Expected::Any).is_passed());
 }
 
-/// A report of one case with one value by `sph`.
-fn report(case: &'static Case, value: f64) -> Report {
+/// A report of one case with one value by `sph`, expected to be at most 10.
+fn report<'a>(suite: &'a Suite, case: &'a Case, value: f64) -> Report<'a> {
+    let at_most = Expected::Between([f64::NEG_INFINITY, 10.0]);
     Report {
         skipped: Vec::new(),
-        suite: &VERIFICATION,
+        suite,
         profiles: vec!["sph".to_owned()],
         findings: vec![Finding {
             case,
             profile: "sph".to_owned(),
             seed: Some(1),
-            checks: vec![Check::at_most("time [s]", Some(value), 10.0)],
+            checks: vec![judgment(Some(value), at_most)],
         }],
     }
 }
 
 #[test]
 fn a_miss_fails_unless_it_is_known_and_a_known_one_that_passes_is_told() {
-    let (passing, missing) = (named("6"), named("4"));
-    assert!(missing.known_miss("sph").is_some() && passing.known_miss("sph").is_none());
+    let suite = verification();
+    let (passing, missing) = (named(&suite, "6"), named(&suite, "4"));
+    assert!(missing.known_misses.contains_key("sph") && passing.known_misses.is_empty());
+    let report = |case, value| report(&suite, case, value);
     assert_eq!(report(passing, 9.0).failures(), [""; 0]);
     let failures = report(passing, 11.0).failures();
     assert_eq!(

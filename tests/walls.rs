@@ -3,9 +3,9 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::common::quadrature::{cross, swept};
+use crate::common::wall_integrals::{Integrals, Region};
 use crate::common::{polygon, rectangle, room, vector};
 use proptest::prelude::*;
-use sandbox::analysis::wall_integrals::{Integrals, Region};
 use sandbox::engine::boundary::{WallMethod, WallShare};
 use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::math::Vector;

@@ -1,8 +1,8 @@
 //! Analysis: statistics over values, space-time diagrams and the speed of waves in them, the speed of fronts, spectra
-//! of oscillations, linear theory (the speed of sound in a crowd and the largest stable time step), integrals over
-//! walls by quadrature, the ways to a destination on a grid, lines that people cross, Voronoi cells, quantities for
-//! safety engineers (local density, exposure, level of service, crowd pressure, forces on bodies and walls), and the
-//! search for parameters: screening, CMA-ES, and the identifiability of parameters. It uses only the engine.
+//! of oscillations, linear theory (the speed of sound in a crowd and the largest stable time step), the ways to a
+//! destination on a grid, lines that people cross, Voronoi cells, quantities for safety engineers (local density,
+//! exposure, level of service, crowd pressure, forces on bodies and walls), and the search for parameters: screening,
+//! CMA-ES, and the identifiability of parameters. It uses only the engine.
 
 pub mod statistics;
 
@@ -17,8 +17,6 @@ pub mod oscillation;
 pub mod sound;
 
 pub mod stability;
-
-pub mod wall_integrals;
 
 pub mod way_field;
 

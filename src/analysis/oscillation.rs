@@ -9,6 +9,8 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
+use super::statistics::vertex;
+
 /// The shortest series with a spectrum.
 const FEWEST_SAMPLES: usize = 16;
 /// Half the width of the main lobe of a Hann window, in resolutions. It contains the power of a pure oscillation.
@@ -73,13 +75,9 @@ impl Spectrum {
         let mut mean = first.clone();
         let count = spectra.len() as f64;
         for other in others {
-            let pairs = mean
-                .counterclockwise
-                .iter_mut()
-                .zip(&other.counterclockwise);
-            pairs.for_each(|(sum, power)| *sum += power);
-            let pairs = mean.clockwise.iter_mut().zip(&other.clockwise);
-            pairs.for_each(|(sum, power)| *sum += power);
+            let sums = mean.counterclockwise.iter_mut().chain(&mut mean.clockwise);
+            let powers = other.counterclockwise.iter().chain(&other.clockwise);
+            sums.zip(powers).for_each(|(sum, power)| *sum += power);
         }
         let both = mean.counterclockwise.iter_mut().chain(&mut mean.clockwise);
         both.for_each(|power| *power /= count);
@@ -128,15 +126,9 @@ impl Spectrum {
         let lowest = LOBE * self.resolution;
         let inside = (1..densities.len().saturating_sub(1)).filter(|&k| densities[k][0] >= lowest);
         let top = inside.max_by(|&a, &b| densities[a][1].total_cmp(&densities[b][1]))?;
-        let [before, here, after] = [top - 1, top, top + 1].map(|k| densities[k][1]);
-        let bend = before - 2.0 * here + after;
-        // A parabola through three points.
-        let shift = if bend < 0.0 {
-            (0.5 * (before - after) / bend).clamp(-0.5, 0.5)
-        } else {
-            0.0
-        };
-        (here > 0.0).then_some((top as f64 + shift) * self.step)
+        let around = [top - 1, top, top + 1].map(|k| densities[k][1]);
+        let shift = vertex(around).clamp(-0.5, 0.5);
+        (around[1] > 0.0).then_some((top as f64 + shift) * self.step)
     }
 
     /// The band that holds the power of a pure oscillation with this frequency, rad/s.

@@ -66,11 +66,6 @@ impl Site {
         obstacles.any(|(bounds, obstacle)| may(bounds) && obstacle.contains(p))
     }
 
-    /// The share of the kernel at `p` that the walls in `near` hide. `p` is outside obstacles.
-    pub fn share(&self, p: Vector, near: &[u32], kernel: &Kernel) -> f64 {
-        kernel.share(&self.walls, p, near)
-    }
-
     /// Whether no wall in `near` is between `p`, outside obstacles, and `q`. Walls that hide `q` also hide that part of
     /// the kernel.
     pub fn sees(&self, p: Vector, q: Vector, near: &[u32]) -> bool {
@@ -88,7 +83,7 @@ impl Site {
         let h = kernel.support_radius;
         if !self.is_inside(p) {
             return Hidden {
-                share: self.share(p, near, kernel),
+                share: kernel.share(&self.walls, p, near),
                 eye: p,
                 inside: None,
             };
@@ -101,7 +96,7 @@ impl Site {
             self.walls.near(eye, h, near);
         }
         Hidden {
-            share: self.share(eye, near, kernel),
+            share: kernel.share(&self.walls, eye, near),
             eye,
             inside: Some(depth),
         }

@@ -26,12 +26,13 @@
 //! |ds/dx| everywhere: it pulls an agent after the one ahead; if the law anticipates, it adds 2 K^goal/(τ m) |ds/dv| to
 //! all friction. Drag adds its γ at twice ρ⁰max to all friction. No step is
 //! longer than the paper's Δt_coarse.
+//!
+//! Every force returns its own [`Rates`]; those from outside the crate add their stiffness and friction to all modes.
 
-use crate::analysis::sound;
 use crate::engine::agents::{Agents, RADIUS_RANGE, REFERENCE_RADIUS};
 use crate::engine::clock::PAPER_COARSE_STEP;
-use crate::engine::forces::walking::WalkingLaw;
-use crate::engine::profile::{Navigation, Profile};
+use crate::engine::forces::goal::GoalForce;
+use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::scene::{Integrator, Scene};
 use crate::engine::traits::Traits;
 
@@ -110,107 +111,46 @@ impl Scheme {
 const PRESSED_DRAG: f64 = 0.25;
 /// A walking law couples an agent to the one ahead: the fastest mode moves both, in opposite directions.
 const BOTH_ENDS: f64 = 2.0;
-/// The highest density of a crowd relative to ρ⁰max: beyond, pressure drives it apart.
-const CROWDED: f64 = 2.0;
-/// Both edges of a corner push an agent in front of it in the same direction.
-const EDGES_AT_A_CORNER: f64 = 2.0;
 
-/// The rates that determine the fastest modes of a crowd.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Mode {
-    /// c/h of the pressure, 1/s.
-    pub pressure: f64,
-    /// K/m of contact between agents, 1/s².
-    pub contact: f64,
-    /// Stiffness over mass of a wall and of social forces, 1/s².
-    pub other_springs: f64,
-    /// Stiffness over mass of a corner, 1/s².
-    pub corner: f64,
-    /// μ, 1/s.
-    pub viscosity: f64,
-    /// K^goal/(τ m), or 1/Δt_coarse for RVO, 1/s.
-    pub correction: f64,
-    /// The steepest walking law: speed per distance, 1/s.
-    pub steepness: f64,
-    /// The derivative of the speed that a walking law gives an agent with respect to the speed of the agent ahead.
-    pub damping: f64,
-    /// The friction of walking laws in the densest crowds, 1/s.
-    pub friction: f64,
-}
-
-impl Mode {
-    /// The largest rates over all profiles of a scene, for its smallest mass.
+impl Rates {
+    /// The largest rates over all profiles of a scene, for its smallest mass, with those of forces from outside.
     pub fn of(scene: &Scene) -> Self {
-        let mass = lightest(scene);
-        let mut mode = Self::default();
-        for group in &scene.groups {
+        let (mass, speed) = (lightest(scene), fastest(scene));
+        let profiles = scene.groups.iter().flat_map(|group| {
             let sph = &group.blend.sph;
-            let speed = sound::speed_of_fluid(sph.gas_constant);
-            for step in group.blend.steps() {
-                let profile = &step.profile;
-                if profile.pressure {
-                    mode.pressure = mode.pressure.max(speed / sph.support_radius);
-                }
-                mode.take(profile, mass);
-                let law = profile.walking.as_ref();
-                let pace = fastest(scene);
-                let steepness = law.map_or(0.0, |law| law.steepness(pace, sph.support_radius));
-                mode.steepness = mode.steepness.max(steepness);
-                mode.damping = mode.damping.max(law.map_or(0.0, WalkingLaw::damping));
-                if let Some(WalkingLaw::Drag(drag)) = law {
-                    let densest = CROWDED * sph.rest_density_max;
-                    mode.friction = mode.friction.max(drag.rate(densest));
-                }
-            }
-        }
+            let extremes = Extremes { mass, speed, sph };
+            let steps = group.blend.steps().iter();
+            steps.map(move |step| step.profile.rates(&extremes))
+        });
+        let mut rates = profiles.fold(Self::default(), Self::max);
         // A push can override K^goal of any agent.
         let pushes = scene.pushes.iter();
         let strongest = pushes
             .filter_map(|push| push.change.goal_scale)
             .fold(0.0, f64::max);
-        mode.correction = mode
+        rates.correction = rates
             .correction
             .max(strongest / shortest_relaxation(scene) / mass);
-        mode
-    }
-
-    fn take(&mut self, profile: &Profile, mass: f64) {
-        let contact = profile.contact;
-        let viscosity = profile.viscosity.map_or(0.0, |v| v.coefficient);
-        let wall = contact.wall_stiffness.unwrap_or(0.0);
-        let social = match profile.navigation {
-            Navigation::Social(_, social) => {
-                social.agent_strength / social.agent_range.powi(2)
-                    + social.wall_strength / social.wall_range.powi(2)
-            }
-            Navigation::Goal(_) | Navigation::Rvo(_) => 0.0,
-        };
-        let correction = match profile.navigation {
-            Navigation::Goal(goal) | Navigation::Social(goal, _) => {
-                goal.goal_scale / goal.relaxation_time / mass
-            }
-            Navigation::Rvo(_) => 1.0 / PAPER_COARSE_STEP,
-        };
-        let agents = contact.agent_stiffness.unwrap_or(0.0);
-        self.contact = self.contact.max(agents / mass);
-        self.other_springs = self.other_springs.max((wall + social) / mass);
-        self.corner = self.corner.max(EDGES_AT_A_CORNER * wall / mass);
-        self.viscosity = self.viscosity.max(viscosity);
-        self.correction = self.correction.max(correction);
+        for force in &scene.own_forces {
+            rates.everywhere += force.stiffness();
+            rates.friction += force.friction();
+        }
+        rates
     }
 
     /// The step by the formula, without margin, seconds.
     pub fn largest_step(&self, scheme: Scheme, constants: &Constants) -> f64 {
         let springs = (constants.contact * self.contact).max(self.other_springs);
         let law = BOTH_ENDS * self.steepness * self.correction;
-        let pressed = (constants.pressure * self.pressure).powi(2) + springs + law;
+        let everywhere = law + self.everywhere;
+        let pressed = (constants.pressure * self.pressure).powi(2) + springs + everywhere;
         let drag = constants.drag * self.viscosity;
         let following = BOTH_ENDS * self.damping * self.correction;
         let friction = self.correction + self.friction + following;
         let steps = [
             scheme.largest_step(pressed, PRESSED_DRAG * drag + friction),
-            scheme.largest_step(self.corner + law, friction),
-            scheme.largest_step(0.0, drag + friction),
+            scheme.largest_step(self.corner + everywhere, friction),
+            scheme.largest_step(self.everywhere, drag + friction),
             PAPER_COARSE_STEP,
         ];
         steps.into_iter().fold(f64::INFINITY, f64::min)
@@ -225,7 +165,7 @@ impl Mode {
 /// The step that `auto` takes, seconds; `None` if there is no formula for the scene's integrator.
 pub fn time_step(scene: &Scene) -> Option<f64> {
     let scheme = Scheme::of(scene.integrator)?;
-    Some(Mode::of(scene).time_step(scheme))
+    Some(Rates::of(scene).time_step(scheme))
 }
 
 /// `value`, rounded down to three significant digits.
@@ -281,11 +221,8 @@ fn fastest(scene: &Scene) -> f64 {
 
 /// The smallest τ of all goal forces, seconds; the paper's τ if there is none.
 fn shortest_relaxation(scene: &Scene) -> f64 {
-    let profiles = scene.groups.iter().flat_map(|group| group.blend.steps());
-    let times = profiles.filter_map(|step| match step.profile.navigation {
-        Navigation::Goal(goal) | Navigation::Social(goal, _) => Some(goal.relaxation_time),
-        Navigation::Rvo(_) => None,
-    });
-    let paper = crate::engine::forces::goal::GoalForce::default().relaxation_time;
+    let goals = (scene.profiles()).filter_map(|profile| profile.navigation.goal());
+    let times = goals.map(|goal| goal.relaxation_time);
+    let paper = GoalForce::default().relaxation_time;
     times.reduce(f64::min).unwrap_or(paper)
 }

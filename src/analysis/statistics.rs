@@ -209,6 +209,15 @@ impl Line {
     }
 }
 
+/// The place of the highest point of the parabola through three values at −1, 0 and 1; 0 if the parabola has none.
+pub fn vertex([before, here, after]: [f64; 3]) -> f64 {
+    let bend = before - 2.0 * here + after;
+    match bend < 0.0 {
+        true => 0.5 * (before - after) / bend,
+        false => 0.0,
+    }
+}
+
 /// A function of points, with its standard error from a jackknife over blocks of neighboring points: their errors are
 /// correlated, so whole blocks are left out. `None` if `value` is `None` for all points or without one of the blocks.
 pub fn jackknife<P: Copy>(points: &[P], value: impl Fn(&[P]) -> Option<f64>) -> Option<Estimate> {

@@ -77,6 +77,17 @@ impl Outlines {
         &self.cells
     }
 
+    /// The ends of the cells with a force on them in an evaluated frame, meters, each with its force per meter, N/m.
+    pub fn pressed(
+        &self,
+        simulation: &Simulation,
+        body_mass: f64,
+    ) -> impl Iterator<Item = ([Vector; 2], f64)> {
+        let forces = self.per_meter(&self.forces(simulation, body_mass));
+        let cells = self.cells.iter().map(|cell| cell.ends).zip(forces);
+        cells.filter(|&(_, force)| force > 0.0)
+    }
+
     /// The force on each cell in an evaluated frame, newtons.
     pub fn forces(&self, simulation: &Simulation, body_mass: f64) -> Vec<f64> {
         let frame = simulation.frame();
@@ -119,9 +130,7 @@ impl Outlines {
         }
         means
     }
-}
 
-impl Outlines {
     /// The point where `forces` act on average within half a [`WINDOW`] of cell `k`, meters.
     fn center(&self, k: usize, forces: &[f64]) -> Vector {
         let middle = |cell: &Cell| (cell.ends[0] + cell.ends[1]) * 0.5;
@@ -228,7 +237,7 @@ impl WallForces {
         let forces = outlines.forces(simulation, body_mass);
         let means = outlines.per_meter(&forces);
         let mut above = 0.0;
-        for ((k, &force), cell) in means.iter().enumerate().zip(outlines.cells()) {
+        for ((k, &force), cell) in means.iter().enumerate().zip(&outlines.cells) {
             if self.peak.is_none_or(|peak| force > peak.force) {
                 let place = outlines.center(k, &forces);
                 self.peak = Some(Peak { force, time, place });

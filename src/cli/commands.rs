@@ -9,8 +9,6 @@ use super::arguments::{ResumeOptions, RunOptions};
 use super::{
     accuracy, bench, calibrate, compare, draw, inspect, measure, reproduce, stress, suite, sweep,
 };
-use crate::lab::validate::VALIDATION;
-use crate::lab::verify::VERIFICATION;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -96,13 +94,16 @@ pub enum Command {
     Stress(stress::StressOptions),
     /// Run verification cases of RiMEA, ISO 20414 and NIST: tables and pictures
     #[command(
-        after_help = format!("{}Example: sandbox verify --only 12 --only iso6 --seeds 3", suite::about(&VERIFICATION)),
+        after_help = format!(
+            "{}Example: sandbox verify --only 12 --only iso6 --seeds 3",
+            suite::about(suite::VERIFICATION)
+        ),
         mut_arg("out", |out| out.required(false).default_value("verification"))
     )]
     Verify(suite::VerifyOptions),
     /// Compare scenes of experiments with what was measured there: tables and pictures
     #[command(
-        after_help = format!("{}Example: sandbox validate door --seeds 3", suite::about(&VALIDATION)),
+        after_help = format!("{}Example: sandbox validate door --seeds 3", suite::about(suite::VALIDATION)),
         mut_arg("out", |out| out.required(false).default_value("validation"))
     )]
     Validate(suite::ValidateOptions),

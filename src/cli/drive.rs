@@ -11,8 +11,9 @@ use super::output::{Recording, check, trajectories};
 use super::terminal::{talk, tell};
 use super::watch::Progress;
 use super::{memory, notes, report};
-use crate::analysis::stability::{FITTED, Mode, Scheme, three_digits};
+use crate::analysis::stability::{FITTED, Scheme, three_digits};
 use crate::engine::clock::SHORTEST_TIME_STEP;
+use crate::engine::forces::rates::Rates;
 use crate::engine::scene::Scene;
 use crate::lab::machine::main_memory;
 use crate::runs::case::Source;
@@ -80,7 +81,7 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
         )));
     }
     let mut outputs = Outputs::new(options.program.force);
-    outputs.goes_on_with("the checkpoint", &options.file, "--checkpoint");
+    outputs.reads_and_replaces("the checkpoint", &options.file, "--checkpoint");
     check(outputs, &options.output, &run.scenario)?;
     go_on(run, resumable.flatten(), &options.program, &options.output)
 }
@@ -145,7 +146,7 @@ fn warn_of_the_step(scene: &Scene) {
         return;
     };
     let step = scene.clock.time_step();
-    let largest = Mode::of(scene).largest_step(scheme, &FITTED);
+    let largest = Rates::of(scene).largest_step(scheme, &FITTED);
     if step > largest {
         let automatic = automatic_step(scene).filter(|&step| step >= SHORTEST_TIME_STEP);
         let advice = match automatic {

@@ -88,10 +88,10 @@ pub fn main_of<A: Parser>(
 
 fn run(command: Command) -> Result<(), Failure> {
     match command {
-        Command::Evacuation(options) => drive::run(&Source::Shipped("evacuation"), &options),
-        Command::Crossing(options) => drive::run(&Source::Shipped("crossing"), &options),
-        Command::Concert(options) => drive::run(&Source::Shipped("concert"), &options),
-        Command::Plaza(options) => drive::run(&Source::Shipped("plaza"), &options),
+        Command::Evacuation(options) => drive::run(&Source::named("evacuation"), &options),
+        Command::Crossing(options) => drive::run(&Source::named("crossing"), &options),
+        Command::Concert(options) => drive::run(&Source::named("concert"), &options),
+        Command::Plaza(options) => drive::run(&Source::named("plaza"), &options),
         Command::Run { file, options } => drive::run(&Source::File(file), &options),
         Command::Resume(options) => drive::resume(&options),
         Command::Inspect(options) => inspect::run(&options),

@@ -25,8 +25,8 @@ pub fn scenario(
     }
 }
 
-/// Advances to a time, seconds, even beyond the scenario's end; fails if no agents are left before. `option` asks for the
-/// time.
+/// Advances to a time, seconds, even beyond the scenario's end; fails if no agents are left before. `option` asks for
+/// the time.
 pub fn advance(
     simulation: &mut Simulation,
     to: f64,

@@ -10,78 +10,94 @@ use super::failure::Failure;
 use super::terminal::{say, talk};
 use super::update::CaseOptions;
 use super::watch::Watch;
-use crate::lab::suite::{Chosen, Suite};
-use crate::lab::validate::VALIDATION;
-use crate::lab::verify::VERIFICATION;
+use crate::lab::suite::{Chosen, Judged, Suite};
+use crate::runs::store::Store;
 use crate::scenario::catalog;
 use crate::scenario::quote::shown;
+
+/// The suites that are built into the program.
+pub const VERIFICATION: &str = "verification";
+pub const VALIDATION: &str = "validation";
 
 #[derive(Args)]
 pub struct VerifyOptions {
     /// Only this case, such as 6, 12a, 12 or iso6; give it several times for several cases
     #[arg(long, value_name = "CASE")]
     pub only: Vec<String>,
+    /// A suite of your own: a study with `cases` (docs/validation.md) [default: the cases below]
+    #[arg(value_name = "SUITE.json")]
+    pub file: Option<PathBuf>,
     #[command(flatten)]
     pub suite: SuiteOptions,
 }
 
 #[derive(Args)]
 pub struct ValidateOptions {
-    /// Only these scenes, such as gap-2.4 or door [default: all]
-    #[arg(value_name = "SCENE")]
+    /// Only these scenes, such as gap-2.4 or door [default: all]; after SUITE.json those of a suite of your own: a
+    /// study with `cases` (docs/validation.md)
+    #[arg(value_name = "SUITE.json|SCENE")]
     pub scene: Vec<String>,
-    /// Folder with files of trajectories: scenes that begin from such a file are skipped without it
-    /// (docs/validation.md)
-    #[arg(long, value_name = "DIR")]
-    pub data: Option<PathBuf>,
     #[command(flatten)]
     pub suite: SuiteOptions,
 }
 
 #[derive(Args)]
 pub struct SuiteOptions {
+    /// Folder with files of trajectories: scenes that begin from such a file are skipped without it
+    /// (docs/validation.md)
+    #[arg(long, value_name = "DIR")]
+    pub data: Option<PathBuf>,
     /// This profile in place of the default ones (verify: sph, sf->sph, rvo->sph; validate: also walk+sph); give it
     /// several times for several profiles
     #[arg(long, value_name = "PROFILE", value_parser = PossibleValuesParser::new(catalog::names()))]
     pub profile: Vec<String>,
     /// Number of seeds per run: 1, 2, …; verify: a case passes if it does with all of them; validate: means over seeds
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=1000))]
-    pub seeds: u64,
+    /// [default: the suite's; 1 of the cases below]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub seeds: Option<u64>,
     #[command(flatten)]
     pub cases: CaseOptions,
 }
 
 pub fn verify(options: &VerifyOptions) -> Result<(), Failure> {
-    judge(
-        &VERIFICATION,
-        ("--only ", &options.only),
-        (&options.suite, None),
-    )
+    let suite = match &options.file {
+        Some(file) => Suite::read(file)?,
+        None => Suite::built_in(VERIFICATION)?,
+    };
+    let names = ("--only ", options.only.as_slice());
+    judge(&suite, Judged::Seeds, names, &options.suite)
 }
 
 pub fn validate(options: &ValidateOptions) -> Result<(), Failure> {
-    let data = options.data.as_deref();
-    judge(&VALIDATION, ("", &options.scene), (&options.suite, data))
+    let (suite, names) = match options.scene.split_first() {
+        Some((file, names)) if file.ends_with(".json") => (Suite::read(Path::new(file))?, names),
+        _ => (Suite::built_in(VALIDATION)?, options.scene.as_slice()),
+    };
+    judge(&suite, Judged::Means, ("", names), &options.suite)
 }
 
-/// All cases of a suite, each with a line about it.
-pub fn about(suite: &'static Suite) -> String {
-    let widest = suite.all().map(|case| case.id.len()).max();
+/// All cases of a built-in suite, each with a line about it.
+pub fn about(suite: &str) -> String {
+    let cases = Suite::built_in(suite).map_or_else(|_| Vec::new(), |suite| suite.cases);
+    let widest = cases.iter().map(|case| case.name.len()).max();
     let width = widest.unwrap_or_default();
-    let line = |id: &str, about: &str| format!("  {id:<width$}  {about}\n");
-    suite.all().map(|case| line(case.id, case.about)).collect()
+    let lines = cases
+        .iter()
+        .map(|case| format!("  {:<width$}  {}\n", case.name, case.title()));
+    lines.collect()
 }
 
 /// Runs the cases with these names, all without names. `option` begins messages about a name.
 fn judge(
-    suite: &'static Suite,
+    suite: &Suite,
+    judged: Judged,
     (option, names): (&str, &[String]),
-    (options, data): (&SuiteOptions, Option<&Path>),
+    options: &SuiteOptions,
 ) -> Result<(), Failure> {
     let cases = suite.chosen(names).map_err(|name| {
-        let ids: Vec<&str> = suite.all().map(|case| case.id).collect();
-        let (name, ids) = (shown(&name), ids.join(", "));
-        Failure::Input(format!("{option}{name}: no such case; there are {ids}"))
+        let known = suite.cases.iter().map(|case| shown(&case.name));
+        let (name, known) = (shown(&name), known.collect::<Vec<_>>().join(", "));
+        Failure::Input(format!("{option}{name}: no such case; there are {known}"))
     })?;
     if options.cases.document.update.is_some() && !(names.is_empty() && options.profile.is_empty())
     {
@@ -94,23 +110,25 @@ fn judge(
         return Err(Failure::Input(reason));
     }
     // The scenes are not in the current folder.
+    let data = options.data.as_deref();
     let data = data.map(|folder| match fs::canonicalize(folder) {
         Ok(path) if path.is_dir() => Ok(path),
         Ok(_) => Err(unusable(folder, "it is not a folder")),
         Err(error) => Err(unusable(folder, error)),
     });
     let data = data.transpose()?;
-    let store = options.cases.store(&[suite.name])?;
-    let chosen = Chosen {
+    options.cases.check(&[&suite.name])?;
+    let planned = suite.planned(&Chosen {
         cases,
         profiles: &options.profile,
         seeds: options.seeds,
         data: data.as_deref(),
-    };
-    let report = suite.run(&chosen, &store, &Watch::new())?;
+    })?;
+    let store = Store::open(&options.cases.out)?;
+    let report = planned.run(judged, &store, &Watch::new())?;
     let text = report.markdown();
     let said = say(format!("{text}\n"));
-    options.cases.document.put([(suite.name, &text)])?;
+    options.cases.document.put([(&suite.name, &text)])?;
     for line in report.no_longer_missed() {
         talk(&format!("note: {line}"));
     }

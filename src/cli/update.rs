@@ -40,10 +40,15 @@ impl CaseOptions {
     /// Opens the folder for the results, after a check that the document can be updated, has a place for one of the
     /// `tables` at least, and that no result replaces it.
     pub fn store(&self, tables: &[&str]) -> Result<Store, Failure> {
+        self.check(tables)?;
+        Ok(Store::open(&self.out)?)
+    }
+
+    /// Applies the options, and makes the checks of [`store`](Self::store).
+    pub fn check(&self, tables: &[&str]) -> Result<(), Failure> {
         use_threads(self.threads)?;
         self.print.apply();
-        self.document.check(Some(&self.out), tables)?;
-        Ok(Store::open(&self.out)?)
+        self.document.check(Some(&self.out), tables)
     }
 }
 

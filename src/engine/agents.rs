@@ -129,38 +129,53 @@ impl Agents {
         self.next_id
     }
 
-    /// Whether all arrays have one entry per agent.
-    pub fn is_whole(&self) -> bool {
+    /// The arrays with an entry for every agent.
+    fn always(&mut self) -> [&mut dyn Column; 10] {
+        [
+            &mut self.id,
+            &mut self.position,
+            &mut self.velocity,
+            &mut self.goal,
+            &mut self.radius,
+            &mut self.mass,
+            &mut self.mean_density,
+            &mut self.newcomer,
+            &mut self.group,
+            &mut self.push,
+        ]
+    }
+
+    /// The arrays that may be empty, or lack agents that entered since.
+    fn sometimes(&mut self) -> [&mut dyn Column; 11] {
+        [
+            &mut self.avoidance,
+            &mut self.allowed_speed,
+            &mut self.acceleration_before,
+            &mut self.route,
+            &mut self.aim,
+            &mut self.trip,
+            &mut self.zone,
+            &mut self.laps,
+            &mut self.preferred_speed,
+            &mut self.max_speed,
+            &mut self.walks_from,
+        ]
+    }
+
+    /// Whether the lengths of all arrays fit together.
+    pub fn is_whole(&mut self) -> bool {
         let count = self.len();
-        let sometimes = [
-            self.avoidance.len(),
-            self.allowed_speed.len(),
-            self.acceleration_before.len(),
-            self.route.len(),
-            self.trip.len(),
-            self.zone.len(),
-            self.laps.len(),
-        ];
-        let always = [
-            self.position.len(),
-            self.velocity.len(),
-            self.goal.len(),
-            self.radius.len(),
-            self.mass.len(),
-            self.mean_density.len(),
-            self.newcomer.len(),
-            self.group.len(),
-            self.push.len(),
-        ];
-        let all_or_none = [
-            self.preferred_speed.len(),
-            self.max_speed.len(),
-            self.walks_from.len(),
-        ];
-        always.iter().all(|&len| len == count)
-            && sometimes.iter().all(|&len| len <= count)
+        let all_or_none = [&self.preferred_speed, &self.max_speed, &self.walks_from];
+        all_or_none
+            .map(Vec::len)
+            .iter()
+            .all(|&len| len == count || len == 0)
             && self.aim.len() == self.route.len()
-            && all_or_none.iter().all(|&len| len == count || len == 0)
+            && self.always().iter().all(|column| column.count() == count)
+            && self
+                .sometimes()
+                .iter()
+                .all(|column| column.count() <= count)
     }
 
     /// The current index of agent `id`; `None` if it has left.
@@ -255,7 +270,8 @@ impl Agents {
             return;
         }
         self.lacks_routes = false;
-        self.make_room_for_routes();
+        self.route.resize(self.len(), None);
+        self.aim.resize(self.len(), Vector::zeros());
         let (ids, positions, goals, radii) = (&self.id, &self.position, &self.goal, &self.radius);
         let trips = &self.trip;
         let routes = self.route.par_iter_mut().zip(&mut self.aim);
@@ -280,72 +296,27 @@ impl Agents {
             });
     }
 
-    fn make_room_for_routes(&mut self) {
-        self.route.resize(self.len(), None);
-        self.aim.resize(self.len(), Vector::zeros());
-    }
-
-    /// Extends `avoidance` to all agents.
-    pub fn make_room_for_avoidance(&mut self) {
-        self.avoidance.resize(self.len(), None);
-    }
-
-    /// Extends `allowed_speed` to all agents.
-    pub fn make_room_for_laws(&mut self) {
-        self.allowed_speed.resize(self.len(), None);
+    /// Agent `i` finds its way again.
+    pub fn forget_route(&mut self, i: usize) {
+        if let Some(route) = self.route.get_mut(i) {
+            *route = None;
+            self.lacks_routes = true;
+        }
     }
 
     /// Moves agent `order[k]` to index k. Agents that are not in `order` are removed.
     pub fn arrange(&mut self, order: &[u32]) {
-        if !self.avoidance.is_empty() {
-            self.make_room_for_avoidance(); // for agents that entered since
-            arrange(&mut self.avoidance, order);
-        }
-        if !self.allowed_speed.is_empty() {
-            self.make_room_for_laws();
-            arrange(&mut self.allowed_speed, order);
-        }
-        if !self.route.is_empty() {
-            self.lacks_routes |= self.route.len() < self.len();
-            self.make_room_for_routes();
-            arrange(&mut self.route, order);
-            arrange(&mut self.aim, order);
-        }
-        if !self.acceleration_before.is_empty() {
-            self.acceleration_before.resize(self.len(), None);
-            arrange(&mut self.acceleration_before, order);
-        }
-        if !self.trip.is_empty() {
-            self.trip.resize(self.len(), None);
-            arrange(&mut self.trip, order);
-        }
-        if !self.laps.is_empty() {
-            self.laps.resize(self.len(), 0);
-            arrange(&mut self.laps, order);
-        }
-        if !self.zone.is_empty() {
-            self.zone.resize(self.len(), None);
-            arrange(&mut self.zone, order);
-        }
-        for values in [
-            &mut self.preferred_speed,
-            &mut self.max_speed,
-            &mut self.walks_from,
-        ] {
-            if !values.is_empty() {
-                arrange(values, order);
+        let count = self.len();
+        self.lacks_routes |= !self.route.is_empty() && self.route.len() < count;
+        for column in self.sometimes() {
+            if column.count() > 0 {
+                column.extend_to(count);
+                column.arrange(order);
             }
         }
-        arrange(&mut self.id, order);
-        arrange(&mut self.position, order);
-        arrange(&mut self.velocity, order);
-        arrange(&mut self.goal, order);
-        arrange(&mut self.radius, order);
-        arrange(&mut self.mass, order);
-        arrange(&mut self.mean_density, order);
-        arrange(&mut self.newcomer, order);
-        arrange(&mut self.group, order);
-        arrange(&mut self.push, order);
+        for column in self.always() {
+            column.arrange(order);
+        }
     }
 }
 
@@ -368,7 +339,29 @@ const SOME: usize = 4096;
 /// Least number of agents that look for their ways per parallel task.
 const FEW: usize = 1024;
 
-fn arrange<T: Copy + Send + Sync>(values: &mut Vec<T>, order: &[u32]) {
-    let arranged = order.par_iter().with_min_len(SOME);
-    *values = arranged.map(|&i| values[i as usize]).collect();
+/// An array with one entry per agent.
+trait Column {
+    /// The number of its entries.
+    fn count(&self) -> usize;
+
+    /// Adds default entries up to this number.
+    fn extend_to(&mut self, count: usize);
+
+    /// Moves entry `order[k]` to index k.
+    fn arrange(&mut self, order: &[u32]);
+}
+
+impl<T: Copy + Default + Send + Sync> Column for Vec<T> {
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn extend_to(&mut self, count: usize) {
+        self.resize(count, T::default());
+    }
+
+    fn arrange(&mut self, order: &[u32]) {
+        let arranged = order.par_iter().with_min_len(SOME);
+        *self = arranged.map(|&i| self[i as usize]).collect();
+    }
 }

@@ -3,7 +3,7 @@
 mod text;
 mod visit;
 
-pub use visit::{Alternative, Doing, Times, Visit, Why};
+pub use visit::{Alternative, Doing, Visit, Why};
 
 use serde::Serialize;
 

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 
 use crate::engine::agents::Agents;
 use crate::engine::boundary::WallMethod;
@@ -18,17 +19,23 @@ use crate::engine::pairs::{
 };
 
 /// Parameters of SPH density and pressure, shared by all profiles of a blend.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
+#[schemars(default)]
 pub struct SphParameters {
-    /// h, meters (§5.2).
+    /// h (§5.2), meters: the support radius of the SPH kernels. Larger: smoother densities, at a cost that grows with
+    /// its square. At 0.5 m an agent has four neighbors at 5 P/m², too few for a density.
     pub support_radius: f64,
-    /// k, m²/s² (§5.5).
+    /// k (Eq. 5), m²/s²: the pressure per excess density; pressure alone carries waves at √(k/2). Higher: a stiffer
+    /// crowd; 0: no pressure. From about 400 on, crowds between the paper's walls keep boiling at any time step.
     pub gas_constant: f64,
-    /// ρ⁰min, P/m² (§5.5).
+    /// ρ⁰min, P/m²: the lowest personal rest density. Higher: sparser crowds feel no pressure. If it equals
+    /// `rest_density_max`, the rest density is static, and crowds at rest move more.
     pub rest_density_min: f64,
-    /// ρ⁰max, P/m² (§5.5).
+    /// ρ⁰max, P/m²: the highest personal rest density; above it, agents are always pushed apart. Higher: denser
+    /// crowds. From about 5 on, discs of 0.24 m overlap in any packing.
     pub rest_density_max: f64,
-    /// T^ρ, seconds (§5.5).
+    /// T^ρ (Eq. 8), seconds: the time in which the personal rest density adapts. Longer: changes of density cause
+    /// pressure for longer. Below Δt it adapts within one frame, and only densities beyond its limits cause pressure.
     pub averaging_time: f64,
 }
 

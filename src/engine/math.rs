@@ -1,5 +1,7 @@
 //! The scalar type is `f64`, the vector type is nalgebra's. Lengths are in meters, and y points up.
 
+use std::ops::{AddAssign, Mul};
+
 /// A position, velocity or force in the plane.
 pub type Vector = nalgebra::Vector2<f64>;
 
@@ -79,6 +81,12 @@ pub fn bounds(points: impl IntoIterator<Item = Vector>) -> Option<[Vector; 2]> {
     corners.reduce(|[low, high], [p, _]| [low.inf(&p), high.sup(&p)])
 }
 
+/// The sides of a closed ring of points: each point with the one that follows it.
+pub fn sides<T: Copy>(ring: &[T]) -> impl Iterator<Item = (T, T)> + '_ {
+    let ends = ring.iter().cycle().skip(1);
+    ring.iter().copied().zip(ends.copied())
+}
+
 /// Sums and maxima that the functions below compute side by side: none waits for another.
 const SUMS: usize = 8;
 
@@ -102,29 +110,22 @@ pub fn is_finite(v: Vector) -> bool {
     v.x.is_finite() && v.y.is_finite()
 }
 
-/// Whether all coordinates are finite.
-pub fn are_finite(vectors: &[Vector]) -> bool {
+/// Whether all numbers, or the coordinates of all vectors, are finite.
+pub fn are_finite<T>(items: &[T]) -> bool
+where
+    T: Copy + Default + PartialEq + AddAssign + Mul<f64, Output = T>,
+{
     // Zero times an infinity or a NaN is NaN, and NaN propagates through a sum. Several sums do not wait for each
     // other.
-    let (whole, rest) = vectors.as_chunks::<SUMS>();
-    let mut zeros = [Vector::zeros(); SUMS];
+    let (whole, rest) = items.as_chunks::<SUMS>();
+    let mut zeros = [T::default(); SUMS];
     for some in whole {
-        for (zero, v) in zeros.iter_mut().zip(some) {
-            *zero += v * 0.0;
+        for (zero, &item) in zeros.iter_mut().zip(some) {
+            *zero += item * 0.0;
         }
     }
-    let last: Vector = rest.iter().map(|v| v * 0.0).sum();
-    zeros == [Vector::zeros(); SUMS] && last == Vector::zeros()
-}
-
-/// Whether all numbers are finite.
-pub fn numbers_are_finite(numbers: &[f64]) -> bool {
-    let (whole, rest) = numbers.as_chunks::<SUMS>();
-    let mut zeros = [0.0; SUMS];
-    for some in whole {
-        for (zero, number) in zeros.iter_mut().zip(some) {
-            *zero += number * 0.0;
-        }
+    for (zero, &item) in zeros.iter_mut().zip(rest) {
+        *zero += item * 0.0;
     }
-    zeros == [0.0; SUMS] && rest.iter().map(|number| number * 0.0).sum::<f64>() == 0.0
+    zeros == [T::default(); SUMS]
 }

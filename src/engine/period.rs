@@ -29,10 +29,7 @@ pub struct Period {
 impl Period {
     /// The coordinate along the axis, meters.
     pub fn along(&self, p: Vector) -> f64 {
-        match self.axis {
-            Axis::X => p.x,
-            Axis::Y => p.y,
-        }
+        p[self.axis as usize]
     }
 
     /// The coordinates at which the period begins and ends, meters.
@@ -42,11 +39,9 @@ impl Period {
 
     /// The way over this number of periods, meters.
     pub fn way(&self, laps: i32) -> Vector {
-        let way = self.length * f64::from(laps);
-        match self.axis {
-            Axis::X => Vector::new(way, 0.0),
-            Axis::Y => Vector::new(0.0, way),
-        }
+        let mut way = Vector::zeros();
+        way[self.axis as usize] = self.length * f64::from(laps);
+        way
     }
 
     /// Whether `p` lies in the period.
@@ -64,10 +59,7 @@ impl Period {
         let mut image = p - self.way(laps);
         // Rounding may end just outside.
         let [from, to] = self.ends();
-        let along = match self.axis {
-            Axis::X => &mut image.x,
-            Axis::Y => &mut image.y,
-        };
+        let along = &mut image[self.axis as usize];
         if *along < from {
             *along = from;
         }
@@ -80,11 +72,8 @@ impl Period {
 
     /// A box, given by its lower left and upper right corners, with the period's ends along the axis.
     pub fn clipped(&self, [mut low, mut high]: [Vector; 2]) -> [Vector; 2] {
-        let [from, to] = self.ends();
-        match self.axis {
-            Axis::X => (low.x, high.x) = (from, to),
-            Axis::Y => (low.y, high.y) = (from, to),
-        }
+        let axis = self.axis as usize;
+        [low[axis], high[axis]] = self.ends();
         [low, high]
     }
 

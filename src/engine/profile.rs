@@ -1,9 +1,11 @@
 //! Profiles (§5.5) and their blending by density (§4.4).
 
 mod blend;
+mod terms;
 mod walls;
 
 pub use blend::{Blend, BlendError, BlendStep};
+pub use terms::{Term, Terms};
 
 use std::ops::Range;
 
@@ -11,6 +13,7 @@ use crate::engine::forces::contact::{self, Contact};
 use crate::engine::forces::goal::GoalForce;
 use crate::engine::forces::near::{self, PairCoefficients, Wanted};
 use crate::engine::forces::pressure;
+use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::forces::viscosity::Viscosity;
@@ -72,6 +75,14 @@ impl Navigation {
             Self::Rvo(rvo) => Some(rvo.avoidance_radius),
         }
     }
+
+    fn rates(&self, of: &Extremes) -> Rates {
+        match self {
+            Self::Goal(goal) => goal.rates(of),
+            Self::Social(goal, social) => goal.rates(of).plus(social.rates(of)),
+            Self::Rvo(rvo) => rvo.rates(),
+        }
+    }
 }
 
 /// Changes for the agents that take part in a push (§6.3).
@@ -85,134 +96,6 @@ pub struct Override {
     pub ignore_sph: bool,
 }
 
-/// Accelerations of one agent by one profile, term by term, m/s²; `None` if the profile has no such term.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Terms {
-    /// Eq. 17.
-    pub goal: Option<Vector>,
-    /// The reduction of the speed by a walking law.
-    pub walking: Option<Vector>,
-    /// Eq. 18.
-    pub social_agents: Option<Vector>,
-    /// Eq. 19.
-    pub social_walls: Option<Vector>,
-    /// Eq. 21.
-    pub rvo: Option<Vector>,
-    /// Eq. 11.
-    pub pressure_agents: Option<Vector>,
-    /// Eq. 12.
-    pub pressure_walls: Option<Vector>,
-    /// Eq. 7.
-    pub viscosity: Option<Vector>,
-    /// Eq. 22.
-    pub contact_agents: Option<Vector>,
-    /// Eq. 23.
-    pub contact_walls: Option<Vector>,
-}
-
-/// A term of an agent's acceleration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Term {
-    /// Eq. 17.
-    Goal,
-    /// The reduction of the speed by a walking law.
-    Walking,
-    /// Eq. 18.
-    SocialAgents,
-    /// Eq. 19.
-    SocialWalls,
-    /// Eq. 21.
-    Rvo,
-    /// Eq. 11.
-    PressureAgents,
-    /// Eq. 12.
-    PressureWalls,
-    /// Eq. 7.
-    Viscosity,
-    /// Eq. 22.
-    ContactAgents,
-    /// Eq. 23.
-    ContactWalls,
-}
-
-impl Term {
-    /// Every term, in the order of the simulation loop.
-    pub fn all() -> impl Iterator<Item = Self> {
-        Terms::default().listed().into_iter().map(|(term, _)| term)
-    }
-
-    /// The name of the term in breakdowns and recordings.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Goal => "goal",
-            Self::Walking => "walking",
-            Self::SocialAgents => "social_agents",
-            Self::SocialWalls => "social_walls",
-            Self::Rvo => "rvo",
-            Self::PressureAgents => "pressure_agents",
-            Self::PressureWalls => "pressure_walls",
-            Self::Viscosity => "viscosity",
-            Self::ContactAgents => "contact_agents",
-            Self::ContactWalls => "contact_walls",
-        }
-    }
-
-    /// Whether the term comes from walls.
-    pub fn is_of_walls(self) -> bool {
-        matches!(
-            self,
-            Self::SocialWalls | Self::PressureWalls | Self::ContactWalls
-        )
-    }
-}
-
-impl Terms {
-    /// Every term with its value, in the order of the simulation loop. Destructuring makes a forgotten field a
-    /// compile error, and so does every `match` on [`Term`].
-    pub fn listed(&self) -> [(Term, Option<Vector>); 10] {
-        let Self {
-            goal,
-            walking,
-            social_agents,
-            social_walls,
-            rvo,
-            pressure_agents,
-            pressure_walls,
-            viscosity,
-            contact_agents,
-            contact_walls,
-        } = *self;
-        [
-            (Term::Goal, goal),
-            (Term::Walking, walking),
-            (Term::SocialAgents, social_agents),
-            (Term::SocialWalls, social_walls),
-            (Term::Rvo, rvo),
-            (Term::PressureAgents, pressure_agents),
-            (Term::PressureWalls, pressure_walls),
-            (Term::Viscosity, viscosity),
-            (Term::ContactAgents, contact_agents),
-            (Term::ContactWalls, contact_walls),
-        ]
-    }
-
-    /// The value of one term, m/s².
-    pub fn get(&self, term: Term) -> Option<Vector> {
-        let listed = self.listed().into_iter();
-        listed
-            .filter(|&(other, _)| other == term)
-            .find_map(|(_, value)| value)
-    }
-
-    /// The profile's acceleration, m/s².
-    pub fn sum(&self) -> Vector {
-        self.listed()
-            .into_iter()
-            .filter_map(|(_, value)| value)
-            .sum()
-    }
-}
-
 impl Profile {
     /// The sums over near agents that this profile reads.
     pub fn wanted(&self) -> Wanted {
@@ -221,6 +104,30 @@ impl Profile {
             viscosity: self.viscosity.is_some(),
             contact: self.contact.agent_stiffness.is_some(),
         }
+    }
+
+    /// The rates by which the forces of this profile limit the time step. Destructuring makes a forgotten force a
+    /// compile error.
+    pub fn rates(&self, of: &Extremes) -> Rates {
+        let Self {
+            name: _,
+            navigation,
+            walking,
+            pressure,
+            viscosity,
+            contact,
+        } = self;
+        let forces = [
+            Some(navigation.rates(of)),
+            walking.map(|law| law.rates(of)),
+            pressure.then(|| pressure::rates(of.sph)),
+            viscosity.map(|viscosity| viscosity.rates()),
+            Some(contact.rates(of)),
+        ];
+        forces
+            .into_iter()
+            .flatten()
+            .fold(Rates::default(), Rates::plus)
     }
 
     /// Whether this profile has `term`, given agents and walls.
@@ -307,14 +214,14 @@ impl Profile {
         changed: Option<&Override>,
         mut take: impl FnMut(fn(&mut Terms) -> &mut Option<Vector>, usize, Vector),
     ) {
+        let goal = self.navigation.goal();
+        let goal = goal.map(|goal| changed_goal(goal, changed));
+        if let Some(goal) = goal {
+            goal.accelerations(frame, agents.clone(), |i, a| take(|t| &mut t.goal, i, a));
+        }
         match self.navigation {
-            Navigation::Goal(goal) => {
-                let goal = changed_goal(goal, changed);
-                goal.accelerations(frame, agents.clone(), |i, a| take(|t| &mut t.goal, i, a));
-            }
-            Navigation::Social(goal, social) => {
-                let goal = changed_goal(goal, changed);
-                goal.accelerations(frame, agents.clone(), |i, a| take(|t| &mut t.goal, i, a));
+            Navigation::Goal(_) => {}
+            Navigation::Social(_, social) => {
                 for i in agents.clone() {
                     take(|t| &mut t.social_walls, i, social.from_walls(frame, i));
                 }
@@ -327,14 +234,14 @@ impl Profile {
                 }
             }
         }
-        match (self.walking, self.navigation.goal()) {
+        match (self.walking, goal) {
             (Some(WalkingLaw::Drag(drag)), _) => {
                 for i in agents.clone() {
                     take(|t| &mut t.walking, i, drag.acceleration(frame, i));
                 }
             }
             (Some(_), Some(goal)) => {
-                let rate = changed_goal(goal, changed).rate();
+                let rate = goal.rate();
                 for i in agents.clone() {
                     let lost = walking::lost_velocity(frame, i);
                     take(|t| &mut t.walking, i, lost * (rate / frame.agents.mass[i]));

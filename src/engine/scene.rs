@@ -225,30 +225,28 @@ impl Scene {
         (self.groups.len() - 1) as u16
     }
 
+    /// The profiles of all groups.
+    pub fn profiles(&self) -> impl Iterator<Item = &Profile> {
+        let steps = self.groups.iter().flat_map(|group| group.blend.steps());
+        steps.map(|step| &step.profile)
+    }
+
     /// The quantities that this scene needs; only these are computed.
     pub fn needs(&self) -> Needs {
-        let profiles = || {
-            self.groups
-                .iter()
-                .flat_map(|group| group.blend.steps())
-                .map(|step| &step.profile)
-        };
-        let pairs = profiles()
-            .map(Profile::wanted)
-            .fold(Wanted::default(), Wanted::with);
-        let blending = self
-            .groups
-            .iter()
-            .any(|group| group.blend.depends_on_density());
+        let wanted = self.profiles().map(Profile::wanted);
+        let pairs = wanted.fold(Wanted::default(), Wanted::with);
+        let mut groups = self.groups.iter();
+        let blending = groups.any(|group| group.blend.depends_on_density());
         let own = self.own_forces.iter().any(|force| force.needs_density());
-        let drag = profiles().any(|profile| matches!(profile.walking, Some(WalkingLaw::Drag(_))));
+        let mut laws = self.profiles().filter_map(|profile| profile.walking);
+        let law = laws.any(|law| law.needs_density());
         Needs {
-            density: pairs.pressure || pairs.viscosity || blending || drag || own,
+            density: pairs.pressure || pairs.viscosity || blending || law || own,
             pairs,
             rvo: self.groups.iter().any(|group| group.blend.rvo().is_some()),
             social: !self.social_forces().is_empty(),
             walking: !self.walking_laws().is_empty(),
-            avoidance: profiles()
+            avoidance: (self.profiles())
                 .filter_map(|profile| profile.navigation.avoidance_radius())
                 .reduce(f64::max),
             removal: self
@@ -292,14 +290,12 @@ impl Scene {
 
     /// The distinct social forces of all profiles.
     pub fn social_forces(&self) -> Vec<SocialForce> {
-        let steps = self.groups.iter().flat_map(|group| group.blend.steps());
-        different(steps.filter_map(|step| step.profile.navigation.social()))
+        different((self.profiles()).filter_map(|profile| profile.navigation.social()))
     }
 
     /// The distinct walking laws of all profiles that look ahead.
     pub fn walking_laws(&self) -> Vec<WalkingLaw> {
-        let steps = self.groups.iter().flat_map(|group| group.blend.steps());
-        let laws = steps.filter_map(|step| step.profile.walking);
+        let laws = self.profiles().filter_map(|profile| profile.walking);
         different(laws.filter(WalkingLaw::looks_ahead))
     }
 

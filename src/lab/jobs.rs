@@ -1,11 +1,32 @@
 //! Jobs for experiments that need every result.
 
+use std::sync::OnceLock;
+
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::lab::error::LabError;
+use crate::runs::error::StoreError;
 use crate::runs::job::{self, Job, Listener};
+use crate::runs::parallel::side_by_side;
 use crate::runs::store::Store;
+
+/// The results of `work` for 0, 1, … below `count`, computed on several threads, each call on a single one.
+///
+/// # Errors
+/// There are no threads.
+pub fn each<T: Send + Sync>(
+    count: usize,
+    work: impl Fn(usize) -> T + Sync,
+) -> Result<Vec<T>, StoreError> {
+    let results: Vec<OnceLock<T>> = (0..count).map(|_| OnceLock::new()).collect();
+    side_by_side(count, |k| {
+        results[k].set(work(k)).ok();
+        Ok::<(), StoreError>(())
+    })?;
+    let results = results.into_iter();
+    Ok(results.filter_map(OnceLock::into_inner).collect())
+}
 
 /// Computes the jobs that are not in `store`, and returns all results in the order of the jobs.
 ///

@@ -1,9 +1,8 @@
 //! The lab: experiments of many runs. The paper's tables and figures ([`reproduce`]), studies over settings and seeds
 //! ([`sweep`]), run time on this [`machine`] ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]),
-//! run time against error ([`accuracy`]), cases with known answers ([`suite`], [`mod@verify`]), scenes of experiments
-//! ([`mod@validate`]), and the search for parameters that reproduce them ([`calibrate`]). [`measure`] computes
-//! densities, fields, fundamental diagrams and flows of any trajectory; [`differences`] compares two results.
-//! Their pictures share [`gallery`].
+//! run time against error ([`accuracy`]), cases with known answers and scenes of experiments ([`suite`]), and the
+//! search for parameters that reproduce them ([`calibrate`]). [`measure`] computes densities, fields, fundamental
+//! diagrams and flows of any trajectory; [`differences`] compares two results. Their pictures share [`gallery`].
 
 pub mod error;
 
@@ -28,9 +27,5 @@ pub mod stress;
 pub mod accuracy;
 
 pub mod suite;
-
-pub mod verify;
-
-pub mod validate;
 
 pub mod calibrate;

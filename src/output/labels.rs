@@ -5,14 +5,15 @@ use crate::engine::journeys::{Kind, Place};
 use crate::engine::math::{Vector, bounds, direction, perpendicular};
 use crate::engine::scene::Scene;
 use crate::output::colors::Rgb;
-use crate::output::scenery::{self, brief};
+use crate::output::scenery::{self, GoalOf, brief};
 use crate::scenario::floor_plan::Label;
 
 /// Labels keep this distance from their points, points.
 pub const GAP: f64 = 4.0;
 /// If no place beside its point is free, a label is at most this many times its height away, with a line to its point.
 const FARTHEST: u32 = 7;
-/// More similar things than this have labels only where these cover nothing, at most this many times their height away.
+/// More goals than this have no labels. More other things than this have labels only where these cover nothing, at most
+/// this many times their height away.
 const FEW: usize = 8;
 const NEAR: u32 = 2;
 /// The names of exits narrower than this lie beside them, points.
@@ -198,7 +199,7 @@ pub fn along_lines(scene: &Scene, apart: f64) -> Vec<Vector> {
     let journeys = &scene.journeys;
     let places = journeys.places.iter().map(scenery::lines);
     let zones = journeys.zones.iter();
-    let lines = places.chain(zones.map(|zone| scenery::closed(&zone.area)));
+    let lines = places.chain(zones.map(|zone| scenery::closed(zone.area.points())));
     let walls = along_walls(&scene.walls, apart);
     let along = |line: Vec<Vector>| {
         let sides = line.windows(2);
@@ -239,6 +240,15 @@ pub fn around(corners: &[Vector], inside: bool) -> Vec<Spot> {
     spots
 }
 
+/// The names of goals, each with its spots, if they are few.
+pub fn of_goals(scene: &Scene, goals: &[GoalOf]) -> Vec<(String, Vec<Spot>)> {
+    let few = goals.iter().filter(|_| goals.len() <= FEW);
+    let named = few.zip(scenery::goal_labels(scene, goals));
+    let around = |goal: Vector| AROUND[..8].iter().map(move |&side| (goal, side)).collect();
+    let spots = named.map(|((goal, _), name)| (name, around(*goal)));
+    spots.filter(|(name, _)| !name.is_empty()).collect()
+}
+
 /// Spots for the name of a place with these lines.
 pub fn of_place(walls: &Walls, place: &Place, lines: &[Vector], screen: &Screen) -> Vec<Spot> {
     match &place.kind {
@@ -275,38 +285,6 @@ pub fn of_place(walls: &Walls, place: &Place, lines: &[Vector], screen: &Screen)
             let first = [away.x, away.y].map(|x| (x * 1.4).round() as i8);
             let sides = std::iter::once(first).chain(AROUND);
             sides.map(|side| (front, side)).collect()
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn labels_of_one_point_never_overlap_and_stay_inside() {
-        let [least, most] = [Vector::zeros(), Vector::new(10.0, 10.0)];
-        let screen = Screen {
-            inside: [least, most],
-            scale: 40.0,
-            height: 9.6,
-            width: |text| 5.0 * text.len() as f64,
-        };
-        let mut labels = Labels::new(screen, Vec::new());
-        let spots = AROUND.map(|side| (Vector::new(5.0, 5.0), side));
-        for k in 0..60 {
-            labels.add(&format!("label {k}"), [0; 3], &spots);
-        }
-        let placed = labels.into_placed();
-        assert!(placed.len() > 12, "{}", placed.len());
-        for (k, Placed { around, .. }) in placed.iter().enumerate() {
-            let [low, high] = around;
-            assert!(low.x >= least.x && low.y >= least.y && high.x <= most.x && high.y <= most.y);
-            for other in &placed[..k] {
-                let [l, h] = other.around;
-                let apart = h.x <= low.x || high.x <= l.x || h.y <= low.y || high.y <= l.y;
-                assert!(apart);
-            }
         }
     }
 }

@@ -71,15 +71,20 @@ pub fn lines(place: &Place) -> Vec<Vector> {
                 .map(|turn| at + Vector::new(turn.cos(), turn.sin()) * *within)
                 .collect()
         }
-        Kind::Waiting(waiting) => closed(&waiting.area),
+        Kind::Waiting(waiting) => closed(waiting.area.points()),
         Kind::Queue(queue) => queue.path.clone(),
     }
 }
 
 /// The corners of a ring, the first one again at the end.
-pub fn closed(ring: &Ring) -> Vec<Vector> {
-    let corners = ring.points();
+pub fn closed(corners: &[Vector]) -> Vec<Vector> {
     corners.iter().chain(corners.first()).copied().collect()
+}
+
+/// The number of places of the same kind as `place`.
+pub fn alike(scene: &Scene, place: &Place) -> usize {
+    let kinds = scene.journeys.places.iter().map(|other| other.kind.name());
+    kinds.filter(|&kind| kind == place.kind.name()).count()
 }
 
 /// The spots on the path of a queue.
@@ -104,9 +109,9 @@ pub fn brief(text: &str) -> String {
 
 /// The kind before a name that does not begin with this word or its plural, as `sources[0]` does.
 pub fn named(kind: &str, name: &str) -> String {
-    let goes_on = |rest: &str| rest.starts_with(|c: char| c.is_alphanumeric() && c != 's');
+    let continues = |rest: &str| rest.starts_with(|c: char| c.is_alphanumeric() && c != 's');
     match name.strip_prefix(kind) {
-        Some(rest) if !goes_on(rest) => name.to_owned(),
+        Some(rest) if !continues(rest) => name.to_owned(),
         _ => format!("{kind} {name}"),
     }
 }
@@ -120,13 +125,11 @@ fn plain(text: &str) -> String {
 fn names(scene: &Scene) -> BTreeSet<String> {
     let journeys = &scene.journeys;
     let places = journeys.places.iter();
-    let places = places.map(|place| (place.kind.name(), place.name.as_str()));
-    let zones = journeys.zones.iter();
-    let zones = zones.map(|zone| ("zone", zone.name.as_str()));
+    let places = places.map(|place| (place.kind.name(), &place.name));
+    let zones = journeys.zones.iter().map(|one| ("zone", &one.name));
     let entrances = scene.entrances.iter();
-    let entrances = entrances.map(|entrance| ("entrance", entrance.name.as_str()));
-    let sources = scene.sources.iter();
-    let sources = sources.map(|source| ("source", source.name.as_str()));
+    let entrances = entrances.map(|one| ("entrance", &one.name));
+    let sources = scene.sources.iter().map(|one| ("source", &one.name));
     let all = places.chain(zones).chain(entrances).chain(sources);
     all.flat_map(|(kind, name)| [plain(name), plain(&named(kind, name))])
         .collect()

@@ -15,14 +15,12 @@ use super::summary::Summary;
 use crate::engine::simulation::Fault;
 use crate::scenario::quote::shown;
 use crate::scenario::{
-    Draft, Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, read_text, shipped_text,
+    Draft, Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, read_text,
 };
 
 /// The source of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Source {
-    /// A scenario that ships with the program.
-    Shipped(&'static str),
     /// A file that is built into the program, relative to `scenarios/`.
     BuiltIn(PathBuf),
     /// A scenario from a file.
@@ -33,7 +31,7 @@ impl Source {
     /// The scenario of this name that ships with the program.
     pub fn shipped(name: &str) -> Option<Self> {
         let found = SHIPPED.iter().find(|shipped| shipped.name == name)?;
-        Some(Self::Shipped(found.name))
+        Some(Self::BuiltIn(format!("{}.json", found.name).into()))
     }
 
     /// The scenario of this name that ships with the program, otherwise a file.
@@ -46,14 +44,12 @@ impl Source {
     /// # Errors
     /// The file cannot be read.
     pub fn text(&self) -> Result<(String, String), ScenarioError> {
-        match self {
-            Self::Shipped(name) => Ok((shipped_text(name)?.to_owned(), format!("{name}.json"))),
-            Self::BuiltIn(path) => match built_in(path) {
-                Some(text) => Ok((text.to_owned(), path.display().to_string())),
-                None => read_text(path).map(|text| (text, path.display().to_string())),
-            },
-            Self::File(path) => Ok((read_text(path)?, path.display().to_string())),
-        }
+        let (path, known) = match self {
+            Self::BuiltIn(path) => (path, built_in(path)),
+            Self::File(path) => (path, None),
+        };
+        let text = known.map_or_else(|| read_text(path), |text| Ok(text.to_owned()))?;
+        Ok((text, path.display().to_string()))
     }
 }
 
@@ -121,7 +117,7 @@ impl Case {
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let own = match &self.source {
             Source::File(path) => Some(path),
-            Source::Shipped(_) | Source::BuiltIn(_) => None,
+            Source::BuiltIn(_) => None,
         };
         own.into_iter().chain(&self.plans).map(PathBuf::as_path)
     }

@@ -233,19 +233,19 @@ impl Context<'_> {
 
     fn compute(&self, todo: &Todo) -> Result<End, StoreError> {
         let job = todo.job;
-        let mut told = 0.0;
-        let mut tell = |part: f64| {
+        let mut reported = 0.0;
+        let mut report = |part: f64| {
             let due = job.expected_secs * part;
-            if due - told >= 0.1 || part >= 1.0 {
-                self.listener.advances(due - told);
-                told = due;
+            if due - reported >= 0.1 || part >= 1.0 {
+                self.listener.advances(due - reported);
+                reported = due;
             }
         };
         let start = Instant::now();
         let lent = self.memory.lend(job.bytes);
-        let computed = caught(|| (job.work)(&mut tell));
+        let computed = caught(|| (job.work)(&mut report));
         drop(lent);
-        tell(1.0);
+        report(1.0);
         let attempts = todo.attempts + 1;
         let kept = computed.map_err(|message| Failure { message, attempts });
         self.store.keep(&job.key, &job.name, &kept)?;

@@ -56,7 +56,7 @@ struct Input {
     name: String,
     path: PathBuf,
     /// The option that may replace this file.
-    goes_on: Option<&'static str>,
+    replaced_by: Option<&'static str>,
 }
 
 #[derive(Debug, Clone)]
@@ -87,16 +87,16 @@ impl Outputs {
         self.inputs.push(Input {
             name: format!("{name} {}", path.display()),
             path: path.to_owned(),
-            goes_on: None,
+            replaced_by: None,
         });
     }
 
     /// Adds an input that is read completely before anything is written. `option` may replace it, even without
     /// `force`.
-    pub fn goes_on_with(&mut self, name: &str, path: &Path, option: &'static str) {
+    pub fn reads_and_replaces(&mut self, name: &str, path: &Path, option: &'static str) {
         self.reads(name, path);
         if let Some(input) = self.inputs.last_mut() {
-            input.goes_on = Some(option);
+            input.replaced_by = Some(option);
         }
     }
 
@@ -132,15 +132,15 @@ impl Outputs {
                 let first = self.outputs[first].name();
                 return Err(OutputsError::Shared(first, output.name()));
             }
-            let mut goes_on = false;
+            let mut may_replace = false;
             for (input, _) in self.inputs.iter().zip(&inputs).filter(|(_, f)| same(f)) {
-                goes_on = input.goes_on == Some(output.option);
-                if !goes_on {
+                may_replace = input.replaced_by == Some(output.option);
+                if !may_replace {
                     return Err(OutputsError::Input(output.name(), input.name.clone()));
                 }
             }
             let is_folder = output.manner == Manner::Folder;
-            if existed[k] && !is_folder && !goes_on && !self.force {
+            if existed[k] && !is_folder && !may_replace && !self.force {
                 return Err(OutputsError::Exists(output.name()));
             }
         }
@@ -159,11 +159,7 @@ impl Trial {
     /// Checks one output. Returns whether it existed.
     fn attempt(&mut self, output: &Output) -> io::Result<bool> {
         let path = &output.path;
-        let there = match fs::metadata(path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => None,
-            about => Some(about?),
-        };
-        match (output.manner, there) {
+        match (output.manner, metadata(path)?) {
             (Manner::Folder, there) => {
                 self.make_folder(path)?;
                 try_folder(path)?;
@@ -222,20 +218,15 @@ impl Drop for Trial {
 /// # Errors
 /// The file cannot be written, or is a folder, a device or a FIFO. An existing file is then unchanged.
 pub fn write_whole(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
-    let permissions = match fs::metadata(path) {
-        Err(error) if error.kind() == ErrorKind::NotFound => None,
-        about => {
-            let about = about?;
-            refuse(&about, true)?;
-            Some(about.permissions())
-        }
-    };
+    let about = metadata(path)?;
+    about.as_ref().map_or(Ok(()), |about| refuse(about, true))?;
     let place = followed(path)?;
     let mut temporary = temporary_in(folder_of(&place))?;
     write(temporary.as_file_mut())?;
-    if let Some(permissions) = permissions {
+    if let Some(about) = about {
         // Not every file system supports permissions.
-        temporary.as_file().set_permissions(permissions).ok();
+        let file = temporary.as_file();
+        file.set_permissions(about.permissions()).ok();
     }
     temporary.persist(&place)?;
     Ok(())
@@ -279,6 +270,14 @@ pub fn folder_of(path: &Path) -> &Path {
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
     folder.unwrap_or(Path::new("."))
+}
+
+/// The metadata of a file, if it exists.
+fn metadata(path: &Path) -> io::Result<Option<Metadata>> {
+    match fs::metadata(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        about => about.map(Some),
+    }
 }
 
 /// Rejects folders and, for a file that is replaced `whole`, anything but regular files: a rename would replace a

@@ -37,6 +37,8 @@ pub mod tracks;
 pub mod visibility;
 pub mod walking;
 pub mod wall_checks;
+#[path = "../../experiments/src/walls/integrals.rs"]
+pub mod wall_integrals;
 pub mod whole;
 
 use sandbox::engine::agents::NewAgent;
@@ -86,7 +88,7 @@ pub fn blend(name: &str) -> Blend {
 }
 
 pub fn blend_with(name: &str, parameters: &Parameters) -> Blend {
-    catalog::named(name, parameters).unwrap().unwrap()
+    catalog::named(name, parameters).unwrap()
 }
 
 /// A scene in double precision with one group, number 0, whose agents are never removed.

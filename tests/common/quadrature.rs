@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use sandbox::analysis::wall_integrals::Integrals;
+use crate::common::wall_integrals::Integrals;
 use sandbox::engine::geometry::Wall;
 use sandbox::engine::math::Vector;
 

@@ -18,9 +18,7 @@ pub fn scene(profile: &str) -> Scene {
         removal_radius: Some(0.5),
         ..Group::new(
             "people",
-            catalog::named(profile, &Parameters::default())
-                .unwrap()
-                .unwrap(),
+            catalog::named(profile, &Parameters::default()).unwrap(),
         )
     });
     for k in 0..49 {

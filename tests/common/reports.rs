@@ -8,7 +8,7 @@ pub fn quick() -> Plan {
     Plan {
         repeats: 3,
         quick: true,
-        ..Plan::default()
+        largest: 1_000_000,
     }
 }
 

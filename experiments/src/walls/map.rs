@@ -1,6 +1,6 @@
 //! Walls as a map: the effect of the solid on an agent, precomputed at the nodes of a grid.
 
-use sandbox::analysis::wall_integrals::{Integrals, Region};
+use super::integrals::{Integrals, Region};
 use sandbox::engine::geometry::Walls;
 use sandbox::engine::math::{Vector, bounds};
 

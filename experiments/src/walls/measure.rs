@@ -3,8 +3,8 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use super::integrals::{Integrals, Region};
 use sandbox::analysis::statistics::Range;
-use sandbox::analysis::wall_integrals::{Integrals, Region};
 use sandbox::engine::math::Vector;
 use serde::Serialize;
 

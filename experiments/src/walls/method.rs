@@ -1,6 +1,6 @@
 //! The compared methods of including walls.
 
-use sandbox::analysis::wall_integrals::{Integrals, Region};
+use super::integrals::{Integrals, Region};
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::math::Vector;
 

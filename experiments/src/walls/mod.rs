@@ -1,13 +1,14 @@
 //! Walls in SPH: the density and force of each method of including them, compared with the exact integrals.
 //!
 //! For an agent at r_i the walls' density is ρ_i⁰ ∫ W and their force −p_i ∫ ∇W (Eqs. 10 and 12), over one of two
-//! [`Region`](sandbox::analysis::wall_integrals::Region)s: the region that the walls *hide* (the union of the paper's
-//! P_k, counted once), or the *solid* itself. The engine's methods integrate over the hidden region. Boundary particles
-//! and volume maps, which the paper argues against (§3.4) and which exist only here, integrate over the solid. Akinci's
-//! particles are an exception: their volumes make a solid body of every wall, so they count as a method for the hidden
-//! region. Each method is measured against its region. The difference between the two regions is reported separately.
+//! [`Region`]s: the region that the walls *hide* (the union of the paper's P_k, counted once), or the *solid* itself.
+//! The engine's methods integrate over the hidden region. Boundary particles and volume maps, which the paper argues
+//! against (§3.4) and which exist only here, integrate over the solid. Akinci's particles are an exception: their
+//! volumes make a solid body of every wall, so they count as a method for the hidden region. Each method is measured
+//! against its region. The difference between the two regions is reported separately.
 
 mod case;
+mod integrals;
 mod map;
 mod measure;
 mod method;
@@ -16,6 +17,7 @@ mod pictures;
 mod report;
 
 pub use case::{Case, Place, cases};
+pub use integrals::{Integrals, Region};
 pub use map::{Map, Stored};
 pub use measure::{CaseReport, Error, MethodReport, WallReport, measure};
 pub use method::{METHODS, Method, Prepared};

@@ -1,6 +1,6 @@
 //! Walls made of boundary particles, as in fluids: fixed particles that fill the obstacles.
 
-use sandbox::analysis::wall_integrals::Integrals;
+use super::integrals::Integrals;
 use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::kernel;
 use sandbox::engine::math::{Vector, bounds};

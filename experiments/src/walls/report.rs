@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use sandbox::analysis::wall_integrals::Region;
+use super::integrals::Region;
 use sandbox::lab::bench::created;
 use sandbox::lab::error::LabError;
 use sandbox::output::table::{Cell, Table};

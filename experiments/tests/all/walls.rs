@@ -1,10 +1,9 @@
 //! The walls: their exact integrals, and the documented properties of each method.
 
 use experiments::walls::{
-    Case, METHODS, Method, Particles, Place, SUPPORT_RADIUS, Stored, TABLES, Volumes, cases,
-    measure,
+    Case, Integrals, METHODS, Method, Particles, Place, Region, SUPPORT_RADIUS, Stored, TABLES,
+    Volumes, cases, measure,
 };
-use sandbox::analysis::wall_integrals::{Integrals, Region};
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::kernel;

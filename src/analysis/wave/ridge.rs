@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::space_time::SpaceTime;
-use crate::analysis::statistics::{Estimate, Line, jackknife};
+use crate::analysis::statistics::{Estimate, Line, jackknife, vertex};
 
 /// Range of wave speeds that are tried, m/s.
 const SPEEDS: [f64; 2] = [2.0, 40.0];
@@ -246,12 +246,7 @@ impl Field {
             return None;
         }
         let [a, b, c] = [series[top - 1], series[top], series[top + 1]].map(|v| sign * v);
-        let bend = a - 2.0 * b + c;
-        let shift = if bend < 0.0 {
-            0.5 * (a - c) / bend
-        } else {
-            0.0
-        };
+        let shift = vertex([a, b, c]);
         Some(RidgePoint {
             x,
             time: self.first_time + (top as f64 + shift) * self.time_step,

@@ -35,12 +35,15 @@ const UNITS: [(&str, &str); 14] = [
     ("radius", "m"),
 ];
 
+/// The value of a cell of a field.
+type OfCell = fn(Mean) -> Option<f64>;
+
 /// The coloring of crowds in all pictures of a run.
 pub struct Look {
     /// The column; `None`: by what agents do.
     column: Option<(String, ColorBar)>,
     /// The value of a cell, its colors, the field and the walls.
-    field: Option<(fn(Mean) -> Option<f64>, ColorBar, Fields, Site)>,
+    field: Option<(OfCell, ColorBar, Fields, Site)>,
 }
 
 impl Look {
@@ -58,7 +61,7 @@ impl Look {
         let field = match field {
             None => None,
             Some(name) => {
-                let value: fn(Mean) -> Option<f64> = match name {
+                let value: OfCell = match name {
                     "speed" => |mean| mean.speed,
                     _ => |mean| Some(mean.density),
                 };

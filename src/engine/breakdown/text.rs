@@ -85,30 +85,28 @@ impl Breakdown {
         let Some(visit) = &self.visit else {
             return Ok(());
         };
+        let place = &visit.place;
         let doing = match &visit.doing {
-            Doing::Walking => format!("walks to `{}`", visit.place),
+            Doing::Walking => format!("walks to `{place}`"),
             Doing::Waiting {
                 since_secs,
                 until_secs,
             } => {
                 let until = until_secs.map_or("it is released".to_owned(), |t| format!("{t:.2} s"));
-                let place = &visit.place;
                 format!("waits in `{place}` since {since_secs:.2} s until {until}")
             }
             Doing::Queued { since_secs, ahead } => {
-                let place = &visit.place;
                 format!("stands in `{place}` since {since_secs:.2} s with {ahead} ahead")
             }
             Doing::Served {
                 since_secs,
                 until_secs,
             } => {
-                let place = &visit.place;
                 format!(
                     "is served at `{place}` until {until_secs:.2} s, there since {since_secs:.2} s"
                 )
             }
-            Doing::Finished => format!("has ended its journey at `{}`", visit.place),
+            Doing::Finished => format!("has ended its journey at `{place}`"),
         };
         let (journey, stage, stages) = (&visit.journey, visit.stage, visit.stages);
         let waited = visit.waited_secs;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::engine::journeys::{Status, Trip};
-use crate::engine::simulation::{Decision, Prospect, Reason, Simulation};
+use crate::engine::simulation::{Decision, Expected, Prospect, Reason, Simulation};
 
 /// The place that an agent on a journey visits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -86,24 +86,7 @@ pub struct Alternative {
     pub weight: Option<f64>,
     /// The expected times, for `quickest`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub expected: Option<Times>,
-}
-
-/// The times that an agent expects.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Times {
-    /// Walking to the place, seconds.
-    pub walking_secs: f64,
-    /// Agents bound for the place that are nearer to it.
-    pub ahead: u32,
-    /// The flow through the place, P/s; `None` if it is unlimited.
-    pub flow_per_sec: Option<f64>,
-    /// Waiting until these agents have passed, seconds.
-    pub waiting_secs: f64,
-    /// Walking from the place to the next stage, seconds.
-    pub onward_secs: f64,
-    /// The longer of walking and waiting, and the way onward, seconds.
-    pub total_secs: f64,
+    pub expected: Option<Expected>,
 }
 
 impl Visit {
@@ -199,14 +182,7 @@ impl Alternative {
             length: Some(prospect.length).filter(|length| length.is_finite()),
             bound: prospect.bound,
             weight: prospect.weight,
-            expected: prospect.expected.map(|expected| Times {
-                walking_secs: expected.walking,
-                ahead: expected.ahead,
-                flow_per_sec: Some(expected.flow).filter(|flow| flow.is_finite()),
-                waiting_secs: expected.waiting,
-                onward_secs: expected.onward,
-                total_secs: expected.total(),
-            }),
+            expected: prospect.expected,
         }
     }
 }

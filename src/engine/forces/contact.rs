@@ -6,6 +6,9 @@
 
 use std::ops::Range;
 
+use schemars::JsonSchema;
+
+use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::pairs::prelude::*;
@@ -16,16 +19,35 @@ use crate::engine::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from
 const ON_THE_WALL: f64 = 1e-9;
 
 /// Contact in one profile; a stiffness `None` disables it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
 pub struct Contact {
-    /// K^ag, 1/s².
+    /// K^ag (Eq. 22), 1/s²: the stiffness of contacts between agents. Higher: agents overlap less; 0: no contact
+    /// force. Above about 2000 the paper's time step is too long. Default: 1000; with SPH 50.
     pub agent_stiffness: Option<f64>,
-    /// K^obs, 1/s².
+    /// K^obs (Eq. 23), 1/s²: the stiffness of contacts with walls. Higher: agents enter walls less deeply; 0: no
+    /// contact force. Above about 4000 the paper's time step is too long. Default: 1000; with SPH 200.
     pub wall_stiffness: Option<f64>,
-    /// The fraction of D_i and D_j that counts in Eq. 22; the same in all profiles of a blend.
+    /// The part of D_i that counts in contacts between agents. Smaller: shoulders turn, crowds get denser before
+    /// overlaps push. Masses, entrances and avoidance keep D_i.
     pub contact_scale: f64,
-    /// The fraction of D_i that counts in Eq. 23.
+    /// The part of D_i that counts in contacts with walls. Smaller: more room in narrow doors and corridors.
     pub wall_contact_scale: f64,
+}
+
+/// Both edges of a corner push an agent in front of it in the same direction.
+const EDGES_AT_A_CORNER: f64 = 2.0;
+
+impl Contact {
+    /// The stiffness of contacts, and of walls and their corners.
+    pub fn rates(&self, of: &Extremes) -> Rates {
+        let wall = self.wall_stiffness.unwrap_or(0.0);
+        Rates {
+            contact: self.agent_stiffness.unwrap_or(0.0) / of.mass,
+            other_springs: wall / of.mass,
+            corner: EDGES_AT_A_CORNER * wall / of.mass,
+            ..Rates::default()
+        }
+    }
 }
 
 /// Eq. 22 for eight agents i: Σ_j max(0, D_i + D_j − |r_ij|) r̂_ij, times a coefficient.

@@ -2,17 +2,23 @@
 
 use std::ops::Range;
 
+use schemars::JsonSchema;
+
+use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, direction};
 use crate::engine::neighbors::BLOCK;
 use crate::engine::pairs::{Level, dispatch};
 
 /// Parameters of Eq. 17.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
+#[schemars(default)]
 pub struct GoalForce {
-    /// K^goal, dimensionless.
+    /// K^goal (Eq. 17): the strength of the goal force. Higher: agents push harder toward their goals. Above about 40
+    /// the paper's time step is too long.
     pub goal_scale: f64,
-    /// τ, seconds.
+    /// τ (Eq. 17), seconds: the time in which the goal force corrects the velocity. Longer: agents respond more slowly
+    /// and push less. Below about 0.013 s the paper's time step is too long.
     pub relaxation_time: f64,
 }
 
@@ -29,6 +35,14 @@ impl GoalForce {
     /// K^goal/τ, 1/s.
     pub fn rate(&self) -> f64 {
         self.goal_scale / self.relaxation_time
+    }
+
+    /// The friction of the goal force.
+    pub fn rates(&self, of: &Extremes) -> Rates {
+        Rates {
+            correction: self.rate() / of.mass,
+            ..Rates::default()
+        }
     }
 
     /// Eq. 17, divided by the mass, for each of `agents`, which are of one block.

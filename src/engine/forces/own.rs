@@ -20,6 +20,15 @@ pub trait Force: Debug + Send + Sync {
         false
     }
 
+    /// The largest rate at which the acceleration pulls an agent back that moves away, 1/s²: K/m of a spring, twice
+    /// that of a spring between agents, 0 of a force that does not depend on the place. Automatic time steps are short
+    /// enough for it.
+    fn stiffness(&self) -> f64;
+
+    /// The largest rate at which the acceleration brakes an agent, 1/s: γ of −γ v, 0 of a force that does not depend on
+    /// the velocity. Automatic time steps are short enough for it.
+    fn friction(&self) -> f64;
+
     /// The acceleration of agent `i` of a frozen frame, m/s²: a finite number that depends only on the frame, so
     /// that the results do not depend on the number of threads. [`Frame::near`] lists neighbors within the radii
     /// that the scene's profiles search. Accelerations of the frame are not computed yet.

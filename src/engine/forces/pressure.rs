@@ -3,6 +3,8 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
+use crate::engine::density::SphParameters;
+use crate::engine::forces::rates::Rates;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::pairs::prelude::*;
@@ -61,6 +63,14 @@ fn add(weight: f64, (density, rest_density): (&[f64], &[f64]), coefficients: &mu
 fn coefficient(density: f64, rest_density: f64) -> f64 {
     let felt = if density >= rest_density { 1.0 } else { 0.0 };
     felt / density
+}
+
+/// c/h of waves of pressure, with the speed of sound c = √(k/2) (`analysis/sound.rs`).
+pub fn rates(sph: &SphParameters) -> Rates {
+    Rates {
+        pressure: (sph.gas_constant / 2.0).sqrt() / sph.support_radius,
+        ..Rates::default()
+    }
 }
 
 /// Eq. 12, divided by ρ_i, for walls with `gradient` = ∫ ∇W over their hidden regions P_k.

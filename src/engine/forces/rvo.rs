@@ -14,19 +14,27 @@ pub use surroundings::{Limits, MovingDisc, Surroundings};
 use candidates::Draws;
 use surroundings::Around;
 
+use schemars::JsonSchema;
+
+use crate::engine::clock::PAPER_COARSE_STEP;
+use crate::engine::forces::rates::Rates;
 use crate::engine::frame::Frame;
 use crate::engine::geometry::Wall;
 use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 
 /// Parameters of Eq. 20 and of its sampling.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
+#[schemars(default)]
 pub struct Rvo {
-    /// w, meters: the weight of the time to collision.
+    /// w (Eq. 20), meters: the weight of the time to collision in RVO. Higher: agents avoid collisions earlier, with
+    /// larger detours; 0: they do not avoid them.
     pub collision_weight: f64,
-    /// Number of candidate velocities per coarse frame.
+    /// The number of candidate velocities of RVO per agent and coarse frame. The cost grows with it. It is part of the
+    /// model: 100 lower the density of the evacuation by 3.7 %, 5000 raise it by 1.6 %.
     pub candidates: u32,
-    /// Agents and walls farther away are ignored, meters.
+    /// As [`SocialForce::avoidance_radius`](super::social::SocialForce::avoidance_radius), meters.
+    #[schemars(skip)]
     pub avoidance_radius: f64,
 }
 
@@ -67,6 +75,14 @@ pub struct Wish {
 }
 
 impl Rvo {
+    /// The rate at which the velocity becomes the chosen one.
+    pub fn rates(&self) -> Rates {
+        Rates {
+            correction: 1.0 / PAPER_COARSE_STEP,
+            ..Rates::default()
+        }
+    }
+
     /// Eq. 21: the acceleration, held until the next coarse frame.
     pub fn acceleration(
         &self,

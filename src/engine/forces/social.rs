@@ -13,6 +13,9 @@ use counting::Counting;
 use cutoff::Cutoff;
 use near::Near;
 
+use schemars::JsonSchema;
+
+use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::frame::Frame;
 use crate::engine::geometry::WallPart;
 use crate::engine::math::{Vector, direction};
@@ -20,21 +23,30 @@ use crate::engine::neighbors::{BLOCK, Run};
 use crate::engine::pairs::{Bodies, Level, Real, Simd, dispatch, each};
 
 /// Parameters of Eqs. 18 and 19 and of the field of view.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
+#[schemars(default)]
 pub struct SocialForce {
-    /// V₀, m²/s².
+    /// V₀ (Eq. 18), m²/s²: the strength of the social force between agents. Higher: they keep more distance; 0: none.
+    /// V₀/σ² acts like a stiffness and limits the time step like `agent_stiffness`.
     pub agent_strength: f64,
-    /// σ, meters.
+    /// σ (Eq. 18), meters: the range over which the social force between agents falls by a factor e. Longer: agents
+    /// react from farther away, but less strongly when close.
     pub agent_range: f64,
-    /// T, seconds.
+    /// T (Eq. 18), seconds: how far ahead the social force looks. Longer: agents avoid collisions earlier; 0: they
+    /// react to distances alone.
     pub anticipation_time: f64,
-    /// U₀, m²/s².
+    /// U₀ (Eq. 19), m²/s²: the strength of the social force of walls. Higher: agents keep more distance from walls;
+    /// 0: none.
     pub wall_strength: f64,
-    /// R, meters.
+    /// R (Eq. 19), meters: the range over which the social force of walls falls by a factor e. Longer: agents react to
+    /// walls from farther away, but less strongly when close.
     pub wall_range: f64,
-    /// Agents and walls farther away are ignored, meters.
+    /// Social forces and RVO ignore agents and walls beyond this distance, meters. Longer: the cost grows with its
+    /// square. If it is shorter than the distance walked in `anticipation_time`, agents notice others late.
     pub avoidance_radius: f64,
-    /// Agents whose force on an agent of mass 1 is certainly below this are ignored, m/s². 0 disables this cutoff.
+    /// Leaves out social forces that are certainly smaller than this, for an agent of mass 1, m/s². Higher: cheaper
+    /// and less exact. 1e-3 moves agents by up to 2 cm in a second and saves up to a third of the time in crowds of
+    /// 10,000.
     pub avoidance_tolerance: f64,
 }
 
@@ -66,6 +78,16 @@ const FIELD_OF_VIEW: f64 = -0.173_648_177_666_930_3;
 const UNSEEN_WEIGHT: f64 = 0.5;
 
 impl SocialForce {
+    /// The stiffness of both forces where they are strongest.
+    pub fn rates(&self, of: &Extremes) -> Rates {
+        let stiffness = self.agent_strength / self.agent_range.powi(2)
+            + self.wall_strength / self.wall_range.powi(2);
+        Rates {
+            other_springs: stiffness / of.mass,
+            ..Rates::default()
+        }
+    }
+
     /// Eq. 18, summed over all agents in range and divided by the mass.
     pub fn from_agents(&self, frame: &Frame, i: usize) -> Vector {
         let mut coefficients = [0.0; BLOCK];

@@ -3,18 +3,31 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
+use schemars::JsonSchema;
+
+use crate::engine::forces::rates::Rates;
 use crate::engine::frame::Frame;
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, splat};
 
 /// The viscosity force of one profile.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
 pub struct Viscosity {
-    /// μ, 1/s, greater than 0.
+    /// μ (Eq. 2), 1/s: the viscosity. Higher: neighbors move together, and a crowd calms down sooner after a push;
+    /// 0: none. Above about 40 the paper's time step is too long.
+    #[schemars(rename = "viscosity")]
     pub coefficient: f64,
 }
 
 impl Viscosity {
+    /// The drag by neighbors.
+    pub fn rates(&self) -> Rates {
+        Rates {
+            viscosity: self.coefficient,
+            ..Rates::default()
+        }
+    }
+
     /// Adds the coefficient μ/ρ_i of the sum in Eq. 7, times `weight`, for each of `agents`.
     pub fn add_coefficients(
         &self,

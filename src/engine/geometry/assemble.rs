@@ -6,14 +6,13 @@
 //! it meets twice. So every ring is simple, outlines run counterclockwise and holes clockwise, and rings touch
 //! only at points.
 
-use parry2d::bounding_volume::{Aabb, BoundingVolume};
-use parry2d::partitioning::{Bvh, BvhBuildStrategy};
+use parry2d::bounding_volume::BoundingVolume;
 
 use super::corners::Corners;
 use super::ring::signed_area;
 use super::ring_index::RingIndex;
-use super::{Area, PolygonError, Ring, to_parry};
-use crate::engine::math::Vector;
+use super::{Area, PolygonError, Ring, bounds_of, index_of};
+use crate::engine::math::{Vector, sides};
 
 /// A piece of an edge, by the numbers of its end points.
 #[derive(Clone, Copy)]
@@ -42,8 +41,7 @@ pub fn assemble(
     let pieces = without_opposites(split(&edges, &corners, tolerance));
     let (mut outlines, mut holes) = (Vec::new(), Vec::new());
     for points in loops(&pieces, &corners) {
-        let ends = points.iter().cycle().skip(1);
-        let around: f64 = points.iter().zip(ends).map(|(a, b)| (b - a).norm()).sum();
+        let around: f64 = sides(&points).map(|(a, b)| (b - a).norm()).sum();
         let area = signed_area(&points);
         // Rings narrower than this on average come from rounding.
         if area.abs() <= tolerance * around {
@@ -63,8 +61,7 @@ fn edges(rings: &[Vec<Vector>], corners: &mut Corners) -> Vec<Piece> {
     let mut edges = Vec::new();
     for ring in rings {
         let numbers: Vec<u32> = ring.iter().map(|&p| corners.number(p)).collect();
-        let ends = numbers.iter().cycle().skip(1);
-        for (&from, &to) in numbers.iter().zip(ends).filter(|(from, to)| from != to) {
+        for (from, to) in sides(&numbers).filter(|(from, to)| from != to) {
             let edge = edges.len() as u32;
             edges.push(Piece { from, to, edge });
         }
@@ -75,11 +72,8 @@ fn edges(rings: &[Vec<Vector>], corners: &mut Corners) -> Vec<Piece> {
 /// Splits the edges at all corners that lie on them.
 fn split(edges: &[Piece], corners: &Corners, tolerance: f64) -> Vec<Piece> {
     let ends = |piece: &Piece| [corners.at(piece.from), corners.at(piece.to)];
-    let bounds = edges.iter().map(|edge| {
-        let around = Aabb::from_points(ends(edge).map(to_parry));
-        around.loosened(tolerance)
-    });
-    let index = Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds.collect::<Vec<_>>());
+    let bounds = edges.iter().map(|edge| bounds_of(ends(edge)));
+    let index = index_of(bounds.map(|around| around.loosened(tolerance)));
     let mut seen = vec![false; corners.len()];
     // Edge, position along it (0 to 1), corner.
     let mut cuts: Vec<(u32, f64, u32)> = Vec::new();
@@ -88,8 +82,7 @@ fn split(edges: &[Piece], corners: &Corners, tolerance: f64) -> Vec<Piece> {
             continue;
         }
         let p = corners.at(corner);
-        let here = Aabb::from_points([to_parry(p)]);
-        for k in index.intersect_aabb(&here) {
+        for k in index.intersect_aabb(&bounds_of([p])) {
             let edge = &edges[k as usize];
             let [a, b] = ends(edge);
             let along = (b - a).dot(&(p - a)) / (b - a).norm_squared();

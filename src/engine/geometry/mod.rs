@@ -24,7 +24,21 @@ pub use shadows::visible_parts;
 pub use wall::{NearestPoint, Wall, WallPart};
 pub use walls::Walls;
 
+use parry2d::bounding_volume::Aabb;
+use parry2d::partitioning::{Bvh, BvhBuildStrategy};
+
 use crate::engine::math::Vector;
+
+/// The bounding box of some points.
+fn bounds_of(points: impl IntoIterator<Item = Vector>) -> Aabb {
+    Aabb::from_points(points.into_iter().map(to_parry))
+}
+
+/// A bounding volume hierarchy over boxes.
+fn index_of(bounds: impl IntoIterator<Item = Aabb>) -> Bvh {
+    let bounds: Vec<Aabb> = bounds.into_iter().collect();
+    Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds)
+}
 
 /// Converts a vector to parry's type.
 fn to_parry(v: Vector) -> parry2d::math::Vector {

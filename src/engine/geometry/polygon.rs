@@ -1,12 +1,11 @@
 //! Obstacles: solid bodies with straight sides.
 
 use parry2d::bounding_volume::Aabb;
-use parry2d::partitioning::{Bvh, BvhBuildStrategy};
 
 use super::ring::{Ring, encloses, signed_area};
 use super::ring_index::{AreaIndex, RingIndex};
-use super::to_parry;
-use crate::engine::math::Vector;
+use super::{bounds_of, index_of};
+use crate::engine::math::{Vector, sides};
 
 /// Edges of different rings may cross by this many meters, or by this fraction of the whole extent, whichever is
 /// larger. In floor plans, corners are computed on a grid and moved by up to a micrometer to a given corner, across the
@@ -170,10 +169,7 @@ impl Polygon {
 
     /// The edges as (start, end), ring by ring, with the solid on the left.
     pub fn edges(&self) -> impl Iterator<Item = (Vector, Vector)> + '_ {
-        self.rings().flat_map(|ring| {
-            let ends = ring.iter().cycle().skip(1);
-            ring.iter().copied().zip(ends.copied())
-        })
+        self.rings().flat_map(sides)
     }
 
     /// Whether `p` is in the solid. Within rounding of the boundary either answer is possible.
@@ -219,17 +215,11 @@ fn check(areas: &[Area]) -> Result<(), PolygonError> {
 
 /// The first points of two crossing edges of different rings.
 fn first_crossing(rings: &[&Ring]) -> Option<(Vector, Vector)> {
-    let mut edges = Vec::new();
-    for (r, ring) in rings.iter().enumerate() {
-        let points = ring.points();
-        let ends = points.iter().cycle().skip(1);
-        edges.extend(points.iter().zip(ends).map(|(&a, &b)| (r, a, b)));
-    }
-    let bounds: Vec<Aabb> = edges
-        .iter()
-        .map(|&(_, a, b)| Aabb::from_points([to_parry(a), to_parry(b)]))
-        .collect();
-    let index = Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds);
+    let edges = rings.iter().enumerate();
+    let edges = edges.flat_map(|(r, ring)| sides(ring.points()).map(move |(a, b)| (r, a, b)));
+    let edges: Vec<(usize, Vector, Vector)> = edges.collect();
+    let bounds: Vec<Aabb> = edges.iter().map(|&(_, a, b)| bounds_of([a, b])).collect();
+    let index = index_of(bounds.iter().copied());
     let touching = TOUCHING.max(TOUCHING_PART * index.root_aabb().extents().max_element());
     let parts = |line, edge| depth(line, edge) > touching;
     edges.iter().enumerate().find_map(|(i, &(r, a, b))| {

@@ -1,11 +1,10 @@
 //! Closed outlines: validated once, always counterclockwise.
 
 use parry2d::bounding_volume::Aabb;
-use parry2d::partitioning::{Bvh, BvhBuildStrategy};
 use parry2d::utils::{point_in_poly2d, segments_intersection2d};
 
-use super::{PolygonError, to_parry};
-use crate::engine::math::{Vector, is_finite, perpendicular};
+use super::{PolygonError, bounds_of, index_of, to_parry};
+use crate::engine::math::{Vector, is_finite, perpendicular, sides};
 
 /// A fraction of a length, not ½: corners of other rings often lie exactly in the middle of an edge.
 const UNEVEN: f64 = 0.414;
@@ -122,10 +121,8 @@ pub(super) fn signed_area(points: &[Vector]) -> f64 {
 fn first_crossing(points: &[Vector]) -> Option<(usize, usize)> {
     let count = points.len();
     let corner = |i: usize| to_parry(points[i % count]);
-    let bounds: Vec<Aabb> = (0..count)
-        .map(|i| Aabb::from_points([corner(i), corner(i + 1)]))
-        .collect();
-    let index = Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds);
+    let bounds: Vec<Aabb> = sides(points).map(|(a, b)| bounds_of([a, b])).collect();
+    let index = index_of(bounds.iter().copied());
     (0..count).find_map(|i| {
         let turn = points[(i + 1) % count] - points[i];
         let next = points[(i + 2) % count] - points[(i + 1) % count];

@@ -2,11 +2,10 @@
 
 use std::cell::OnceCell;
 
-use parry2d::bounding_volume::Aabb;
-use parry2d::partitioning::{Bvh, BvhBuildStrategy};
+use parry2d::partitioning::Bvh;
 
-use super::{Area, Ring, to_parry};
-use crate::engine::math::Vector;
+use super::{Area, Ring, bounds_of, index_of};
+use crate::engine::math::{Vector, sides};
 
 /// Rings with more corners than this get an index of their edges.
 const FEW: usize = 32;
@@ -22,10 +21,9 @@ pub struct RingIndex<'a> {
 impl<'a> RingIndex<'a> {
     /// Numbers the rings in their order, from 0.
     pub fn new(rings: Vec<&'a Ring>) -> Self {
-        let around = |ring: &&Ring| Aabb::from_points(ring.points().iter().map(|&p| to_parry(p)));
-        let bounds: Vec<Aabb> = rings.iter().map(around).collect();
+        let around = |ring: &&Ring| bounds_of(ring.points().iter().copied());
         Self {
-            bounds: Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds),
+            bounds: index_of(rings.iter().map(around)),
             edges: rings.iter().map(|_| OnceCell::new()).collect(),
             rings,
         }
@@ -34,7 +32,7 @@ impl<'a> RingIndex<'a> {
     /// The numbers of the rings that contain `p`, in no particular order. Within rounding of an edge either answer
     /// is possible.
     pub fn around(&self, p: Vector) -> Vec<usize> {
-        let here = Aabb::from_points([to_parry(p)]);
+        let here = bounds_of([p]);
         let near = self.bounds.intersect_aabb(&here).map(|k| k as usize);
         near.filter(|&k| self.encloses(k, p)).collect()
     }
@@ -43,17 +41,14 @@ impl<'a> RingIndex<'a> {
         let points = self.rings[k].points();
         let edge = |i: usize| (points[i], points[(i + 1) % points.len()]);
         if points.len() <= FEW {
-            return (0..points.len()).filter(|&i| crosses(edge(i), p)).count() % 2 == 1;
+            return sides(points).filter(|&edge| crosses(edge, p)).count() % 2 == 1;
         }
         let index = self.edges[k].get_or_init(|| {
-            let bounds = (0..points.len()).map(|i| {
-                let (a, b) = edge(i);
-                Aabb::from_points([to_parry(a), to_parry(b)])
-            });
-            Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds.collect::<Vec<_>>())
+            let bounds = sides(points).map(|(a, b)| bounds_of([a, b]));
+            index_of(bounds)
         });
         let far = Vector::new(index.root_aabb().maxs.x.max(p.x), p.y);
-        let ray = Aabb::from_points([to_parry(p), to_parry(far)]);
+        let ray = bounds_of([p, far]);
         let met = index.intersect_aabb(&ray).map(|i| edge(i as usize));
         met.filter(|&edge| crosses(edge, p)).count() % 2 == 1
     }

@@ -1,9 +1,9 @@
 //! All obstacles of a scene, with a spatial index of their walls.
 
 use parry2d::bounding_volume::{Aabb, BoundingVolume};
-use parry2d::partitioning::{Bvh, BvhBuildStrategy};
+use parry2d::partitioning::Bvh;
 
-use super::{Polygon, Wall, to_parry};
+use super::{Polygon, Wall, bounds_of, index_of, to_parry};
 use crate::engine::math::Vector;
 
 /// Distance in front of a wall at which a move stops, meters: far above the rounding of coordinates up to
@@ -38,19 +38,15 @@ impl Walls {
                 }));
             }
         }
-        let bounds: Vec<Aabb> = walls.iter().map(bounds_of).collect();
-        let around: Vec<Aabb> = obstacles
-            .iter()
-            .map(|polygon| Aabb::from_points(polygon.points().iter().map(|&p| to_parry(p))))
-            .collect();
+        let around = |polygon: &Polygon| bounds_of(polygon.points().iter().copied());
         let endless = obstacles.iter().enumerate();
         let endless = endless.filter(|(_, polygon)| polygon.is_unbounded());
         Self {
             unbounded: endless.map(|(k, _)| k).collect(),
+            obstacle_index: index_of(obstacles.iter().map(around)),
+            index: index_of(walls.iter().map(bounds_of_wall)),
             obstacles,
             walls,
-            obstacle_index: Bvh::from_leaves(BvhBuildStrategy::Binned, &around),
-            index: Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds),
         }
     }
 
@@ -94,8 +90,7 @@ impl Walls {
     /// All walls with a point less than `radius` meters from any of `points`, and possibly others, in ascending
     /// order.
     pub fn near_any(&self, points: &[Vector], radius: f64) -> Vec<u32> {
-        let points = points.iter().map(|&p| to_parry(p));
-        let reach = Aabb::from_points(points).loosened(radius);
+        let reach = bounds_of(points.iter().copied()).loosened(radius);
         let mut found: Vec<u32> = self.index.intersect_aabb(&reach).collect();
         found.sort_unstable();
         found
@@ -178,7 +173,7 @@ impl Walls {
         for &k in &near {
             let a = self.wall(k);
             others.clear();
-            let meeting = bounds_of(a).loosened(CLEARANCE);
+            let meeting = bounds_of_wall(a).loosened(CLEARANCE);
             others.extend(self.index.intersect_aabb(&meeting).filter(|&j| j < k));
             others.retain(|j| near.binary_search(j).is_ok());
             others.sort_unstable();
@@ -204,7 +199,7 @@ impl Walls {
 
     /// The index of the first obstacle that contains `p`.
     pub fn obstacle_at(&self, p: Vector) -> Option<usize> {
-        let here = Aabb::from_points([to_parry(p)]);
+        let here = bounds_of([p]);
         let near = self.obstacle_index.intersect_aabb(&here);
         near.map(|k| k as usize)
             .chain(self.unbounded.iter().copied())
@@ -213,6 +208,6 @@ impl Walls {
     }
 }
 
-fn bounds_of(wall: &Wall) -> Aabb {
-    Aabb::from_points([to_parry(wall.start), to_parry(wall.end)])
+fn bounds_of_wall(wall: &Wall) -> Aabb {
+    bounds_of([wall.start, wall.end])
 }

@@ -2,7 +2,7 @@
 
 use crate::engine::distribution::Distribution;
 use crate::engine::geometry::Ring;
-use crate::engine::math::{Vector, direction};
+use crate::engine::math::{Vector, direction, sides};
 use crate::engine::ways::{Goal, nearest_on};
 
 /// A place that agents visit.
@@ -93,10 +93,8 @@ impl Place {
             Kind::Exit(Exit { line, .. }) | Kind::Line(line) => vec![Goal::Line(*line)],
             Kind::Disk { at, .. } => vec![Goal::Point(*at)],
             Kind::Waiting(waiting) => {
-                let corners = waiting.area.points();
-                let ends = corners.iter().cycle().skip(1);
-                let sides = corners.iter().zip(ends);
-                sides.map(|(&a, &b)| Goal::Line([a, b])).collect()
+                let sides = sides(waiting.area.points());
+                sides.map(|(a, b)| Goal::Line([a, b])).collect()
             }
             Kind::Queue(queue) => queue.path.iter().map(|&p| Goal::Point(p)).collect(),
         }
@@ -109,10 +107,8 @@ impl Place {
             Kind::Disk { at, .. } => *at,
             Kind::Waiting(waiting) if waiting.area.contains(p) => p,
             Kind::Waiting(waiting) => {
-                let corners = waiting.area.points();
-                let ends = corners.iter().cycle().skip(1);
-                let points = corners.iter().zip(ends).map(|(&a, &b)| nearest_on(p, a, b));
-                nearest(points, p)
+                let sides = sides(waiting.area.points());
+                nearest(sides.map(|(a, b)| nearest_on(p, a, b)), p)
             }
             Kind::Queue(queue) => nearest(queue.path.iter().copied(), p),
         }

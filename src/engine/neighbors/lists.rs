@@ -76,14 +76,7 @@ impl Lists {
 
     /// The list of agent `i`; empty after [`clear`](Self::clear).
     pub fn of(&self, i: usize) -> &[u32] {
-        let Some(block) = self.blocks.get(i / BLOCK) else {
-            return &[];
-        };
-        if block.indices.is_empty() {
-            return &[];
-        }
-        let k = i % BLOCK;
-        let start = if k == 0 { 0 } else { block.ends[k - 1] };
-        &block.indices[start as usize..block.ends[k] as usize]
+        let own = self.listed(i..i + 1).next();
+        own.map_or(&[], |(_, list)| list)
     }
 }

@@ -18,11 +18,11 @@ pub type Mask<R, S> = <Lanes<R, S> as SimdBase<S>>::Mask;
 /// A number type for sums over pairs, with its representation of coordinates.
 pub trait Real: SimdFloatElement + Into<f64> + Copy + Default + Send + Sync + 'static {
     /// A coordinate; only differences between near coordinates are meaningful.
-    type Coordinate: Copy + Debug + Default + Send + Sync + 'static;
+    type Coordinate: SimdElement + Copy + Debug + Default + Send + Sync + 'static;
     /// [`LANES`] numbers.
     type Lanes<S: Simd>: SimdFloat<S, Element = Self>;
     /// [`LANES`] coordinates.
-    type Places<S: Simd>: Copy;
+    type Places<S: Simd>: SimdBase<S, Element = Self::Coordinate, Mask = Mask<Self, S>>;
 
     /// Lower bound to which squared distances are clamped, in units²: far below real distances, but large enough to
     /// divide by.
@@ -44,7 +44,10 @@ pub trait Real: SimdFloatElement + Into<f64> + Copy + Default + Send + Sync + 's
     }
 
     /// Loads the first [`LANES`] coordinates of `places`.
-    fn places<S: Simd>(simd: S, places: &[Self::Coordinate]) -> Self::Places<S>;
+    #[inline(always)]
+    fn places<S: Simd>(simd: S, places: &[Self::Coordinate]) -> Self::Places<S> {
+        Self::Places::from_slice(simd, &places[..LANES])
+    }
 
     /// Each coordinate of `places` minus `times` times `way`.
     fn moved<S: Simd>(
@@ -55,14 +58,20 @@ pub trait Real: SimdFloatElement + Into<f64> + Copy + Default + Send + Sync + 's
     ) -> Self::Places<S>;
 
     /// `place` in all lanes.
-    fn place<S: Simd>(simd: S, place: Self::Coordinate) -> Self::Places<S>;
+    #[inline(always)]
+    fn place<S: Simd>(simd: S, place: Self::Coordinate) -> Self::Places<S> {
+        Self::Places::splat(simd, place)
+    }
 
     /// Writes the `kept` coordinates of `places`, side by side, then zeros.
+    #[inline(always)]
     fn store_kept<S: Simd>(
         places: Self::Places<S>,
         kept: Mask<Self, S>,
         out: &mut [Self::Coordinate],
-    );
+    ) {
+        places.compress(kept).store_slice(out);
+    }
 
     /// Each coordinate of `from` minus `to`.
     #[inline(always)]
@@ -97,23 +106,8 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn places<S: Simd>(simd: S, places: &[f64]) -> f64x8<S> {
-        f64x8::from_slice(simd, &places[..LANES])
-    }
-
-    #[inline(always)]
     fn moved<S: Simd>(simd: S, places: f64x8<S>, way: f64, times: i32) -> f64x8<S> {
         places - f64x8::splat(simd, way * f64::from(times))
-    }
-
-    #[inline(always)]
-    fn place<S: Simd>(simd: S, place: f64) -> f64x8<S> {
-        f64x8::splat(simd, place)
-    }
-
-    #[inline(always)]
-    fn store_kept<S: Simd>(places: f64x8<S>, kept: Mask<f64, S>, out: &mut [f64]) {
-        places.compress(kept).store_slice(out);
     }
 
     #[inline(always)]
@@ -163,23 +157,8 @@ impl Real for f32 {
     }
 
     #[inline(always)]
-    fn places<S: Simd>(simd: S, places: &[i32]) -> i32x8<S> {
-        i32x8::from_slice(simd, &places[..LANES])
-    }
-
-    #[inline(always)]
     fn moved<S: Simd>(simd: S, places: i32x8<S>, way: i32, times: i32) -> i32x8<S> {
         places - i32x8::splat(simd, way.wrapping_mul(times))
-    }
-
-    #[inline(always)]
-    fn place<S: Simd>(simd: S, place: i32) -> i32x8<S> {
-        i32x8::splat(simd, place)
-    }
-
-    #[inline(always)]
-    fn store_kept<S: Simd>(places: i32x8<S>, kept: Mask<f32, S>, out: &mut [i32]) {
-        places.compress(kept).store_slice(out);
     }
 
     #[inline(always)]

@@ -11,10 +11,15 @@ const BIN: f64 = 0.5;
 /// Larger distances are clamped to this, meters.
 const FARTHEST_BIN: f64 = 500.0;
 
+/// The bin of a distance, meters.
+fn bin_of(length: f64) -> usize {
+    (length.min(FARTHEST_BIN) / BIN) as usize
+}
+
 impl PlaceState {
     /// Counts an agent `length` meters away that is now bound for this place (`comes`), or no longer bound for it.
     pub(super) fn count(&mut self, length: f64, comes: bool) {
-        let bin = (length.min(FARTHEST_BIN) / BIN) as usize;
+        let bin = bin_of(length);
         let last = self.nearer.last().copied().unwrap_or(0);
         self.nearer.resize(self.nearer.len().max(bin + 2), last);
         for count in &mut self.nearer[bin + 1..] {
@@ -29,8 +34,7 @@ impl PlaceState {
     /// The number of agents bound for this place that are nearer to it than `length` meters.
     pub(super) fn nearer_than(&self, length: f64) -> u32 {
         let last = self.nearer.last().copied().unwrap_or(0);
-        let bin = (length.min(FARTHEST_BIN) / BIN) as usize;
-        self.nearer.get(bin).copied().unwrap_or(last)
+        self.nearer.get(bin_of(length)).copied().unwrap_or(last)
     }
 }
 
@@ -58,7 +62,7 @@ pub(super) fn count(crowd: &mut Crowd, scene: &Scene) {
         if !is_bound {
             continue;
         }
-        let bin = (route.length().min(FARTHEST_BIN) / BIN) as usize;
+        let bin = bin_of(route.length());
         let nearer = &mut crowd.progress.places[usize::from(trip.place)].nearer;
         nearer.resize(nearer.len().max(bin + 2), 0);
         nearer[bin + 1] += 1;

@@ -1,6 +1,7 @@
 //! How agents choose between places.
 
 use rand::Rng;
+use serde::Serialize;
 
 use super::{Crowd, PlaceState};
 use crate::engine::journeys::{Choice, Journey, JourneyStage, Kind, Place, Trip};
@@ -53,25 +54,20 @@ pub struct Prospect {
 }
 
 /// The times that an agent expects for passing a place and walking to its next stage.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Expected {
     /// Walking to the place, seconds.
-    pub walking: f64,
+    pub walking_secs: f64,
     /// Agents bound for the place that are nearer to it.
     pub ahead: u32,
-    /// The flow through the place, P/s.
-    pub flow: f64,
+    /// The flow through the place, P/s; `None` if it is unlimited.
+    pub flow_per_sec: Option<f64>,
     /// Waiting until these agents have passed, seconds.
-    pub waiting: f64,
+    pub waiting_secs: f64,
     /// Walking from the place to the next stage, seconds.
-    pub onward: f64,
-}
-
-impl Expected {
+    pub onward_secs: f64,
     /// The total time, seconds: the crowd ahead passes while the agent walks.
-    pub fn total(&self) -> f64 {
-        self.walking.max(self.waiting) + self.onward
-    }
+    pub total_secs: f64,
 }
 
 /// The decision of an agent about the place of its stage.
@@ -145,7 +141,7 @@ impl Chooser<'_> {
             }
             Choice::Quickest => {
                 let expected = |place| of(place).and_then(|prospect| prospect.expected);
-                let time = |place| expected(place).map_or(f64::INFINITY, |e| e.total());
+                let time = |place| expected(place).map_or(f64::INFINITY, |e| e.total_secs);
                 let is_quicker = |new, old| new < CLEARLY_QUICKER * old;
                 match best(&open, before, time, is_quicker) {
                     (place, true) => (place, Reason::NotClearlyQuicker),
@@ -275,12 +271,15 @@ impl Chooser<'_> {
             let shortest = lengths.filter(|length| length.is_finite()).reduce(f64::min);
             shortest.unwrap_or(0.0)
         });
+        let [walking, waiting] = [length / speed, f64::from(ahead) / flow];
+        let onward = onward / speed;
         Expected {
-            walking: length / speed,
+            walking_secs: walking,
             ahead,
-            flow,
-            waiting: f64::from(ahead) / flow,
-            onward: onward / speed,
+            flow_per_sec: Some(flow).filter(|flow| flow.is_finite()),
+            waiting_secs: waiting,
+            onward_secs: onward,
+            total_secs: walking.max(waiting) + onward,
         }
     }
 

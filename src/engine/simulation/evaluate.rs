@@ -12,7 +12,7 @@ use crate::engine::forces::near::{self, PairCoefficients};
 use crate::engine::forces::rvo::{Scratch, Wish};
 use crate::engine::forces::walking;
 use crate::engine::frame::Frame;
-use crate::engine::math::{Vector, are_finite, clamp_length, direction, numbers_are_finite};
+use crate::engine::math::{Vector, are_finite, clamp_length, direction};
 use crate::engine::neighbors::{BLOCK, ListPolicy, TASK};
 use crate::engine::pairs::{Level, dispatch, each};
 use crate::engine::profile::{Blend, Override};
@@ -169,7 +169,8 @@ impl Simulation {
             return;
         }
         let (fixed, crowd) = (&self.fixed, &mut self.crowd);
-        crowd.agents.make_room_for_laws();
+        let count = crowd.agents.len();
+        crowd.agents.allowed_speed.resize(count, None);
         if crowd.decides() {
             crowd.agents.allowed_speed.fill(None);
         }
@@ -205,7 +206,8 @@ impl Simulation {
         if !self.fixed.needs.rvo {
             return;
         }
-        self.crowd.agents.make_room_for_avoidance();
+        let count = self.crowd.agents.len();
+        self.crowd.agents.avoidance.resize(count, None);
         let (fixed, is_time) = (&self.fixed, self.crowd.decides());
         let frame = self.derived.frame(fixed, &self.crowd);
         let (agents, chosen) = (frame.agents, &mut self.buffers.avoidance);
@@ -352,5 +354,5 @@ fn block_is_finite(frame: &Frame, b: usize, acceleration: &[Vector]) -> bool {
     let density = frame.fields.density.get(block.clone()).unwrap_or(&[]);
     let (position, velocity) = (&frame.agents.position, &frame.agents.velocity);
     let vectors = [acceleration, &position[block.clone()], &velocity[block]];
-    vectors.into_iter().all(are_finite) && numbers_are_finite(density)
+    vectors.into_iter().all(are_finite) && are_finite(density)
 }

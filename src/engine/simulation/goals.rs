@@ -92,10 +92,7 @@ impl Simulation {
             self.crowd.leave_journey(&self.fixed.scene, i);
             let agents = &mut self.crowd.agents;
             agents.goal[i] = goal;
-            if let Some(route) = agents.route.get_mut(i) {
-                *route = None;
-                agents.lacks_routes = true;
-            }
+            agents.forget_route(i);
         }
         Ok(())
     }

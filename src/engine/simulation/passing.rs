@@ -280,10 +280,7 @@ impl Crowd {
             self.progress.outside += 1;
         }
         self.agents.goal[i] = self.agents.position[i] + way;
-        if let Some(route) = self.agents.route.get_mut(i) {
-            *route = None;
-            self.agents.lacks_routes = true;
-        }
+        self.agents.forget_route(i);
     }
 
     /// Removes the bodies of agents that have left: at the ends of their ways, after [`OUTSIDE_SECS`], and, in coarse

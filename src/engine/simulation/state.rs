@@ -58,7 +58,7 @@ impl Simulation {
     ///
     /// # Errors
     /// The state does not fit the scene.
-    pub fn resumed(scene: Scene, state: State) -> Result<Self, StateError> {
+    pub fn resumed(scene: Scene, mut state: State) -> Result<Self, StateError> {
         let empty = Scene {
             agents: Vec::new(),
             ..scene
@@ -104,7 +104,8 @@ impl Simulation {
 
 impl State {
     /// Whether this state fits `scene`.
-    fn check(&self, scene: &Scene) -> Result<(), StateError> {
+    fn check(&mut self, scene: &Scene) -> Result<(), StateError> {
+        let is_whole = self.agents.is_whole();
         let agents = &self.agents;
         let mut groups = agents.group.iter().map(|&group| usize::from(group));
         let mut pushes = agents.push.iter().flatten().map(|&push| usize::from(push));
@@ -122,7 +123,7 @@ impl State {
                 .flatten()
                 .all(|trip| !self.progress.places.is_empty() && trips::fits(trip, scene));
         let listed = self.crowd_changed || self.sorted_at.len() == agents.len();
-        (agents.is_whole() && known && listed)
+        (is_whole && known && listed)
             .then_some(())
             .ok_or(StateError)
     }

@@ -258,10 +258,7 @@ impl Crowd {
             trip.place = place;
             trip.status = Status::Walking;
             trip.hold = None;
-            if let Some(route) = self.agents.route.get_mut(i) {
-                *route = None;
-                self.agents.lacks_routes = true;
-            }
+            self.agents.forget_route(i);
             let place = &scene.journeys.places[usize::from(place)];
             self.agents.goal[i] = place.nearest_point(self.agents.position[i]);
         }

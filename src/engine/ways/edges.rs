@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashMap};
 use super::mesh::{side, to_segment};
 use super::narrow::{End, Narrow};
 use crate::engine::geometry::Area;
-use crate::engine::math::{Vector, bounds};
+use crate::engine::math::{Vector, bounds, sides};
 
 /// Two points by their numbers.
 pub type Edge = [usize; 2];
@@ -40,8 +40,7 @@ impl Edges {
                 })
             };
             let around: Vec<usize> = ring.points().iter().map(&mut number).collect();
-            let ends = around.iter().cycle().skip(1);
-            walls.extend(around.iter().zip(ends).map(|(&a, &b)| [a, b]));
+            walls.extend(sides(&around).map(|(a, b)| [a, b]));
         }
         Self {
             points,

@@ -87,6 +87,18 @@ pub struct Sight {
     pub view: View,
 }
 
+impl Sight {
+    /// The cone `view` of triangle `t`, where it enters the triangle beyond this side; `None` beyond a wall.
+    pub fn beyond(mesh: &Mesh, (t, side): (u32, usize), view: View) -> Option<Self> {
+        let triangle = mesh.triangle(t).across[side]?;
+        Some(Self {
+            triangle,
+            side: mesh.side_along(triangle, t),
+            view,
+        })
+    }
+}
+
 /// Expands `sights` from triangle to triangle. Calls `enter` for every visible triangle, and expands behind it if that
 /// returns true. Calls `see` for every visible point that lies opposite to the side through which the cone enters its
 /// triangle.
@@ -118,16 +130,7 @@ pub fn expand(
         if a >= 0.0 && b <= 0.0 {
             see(t, top, apex.at);
         }
-        let mut go_on = |exit: usize, view: View| {
-            if let Some(next) = triangle.across[exit] {
-                let side = mesh.side_along(next, t);
-                sights.push(Sight {
-                    triangle: next,
-                    side,
-                    view,
-                });
-            }
-        };
+        let mut go_on = |exit: usize, view| sights.extend(Sight::beyond(mesh, (t, exit), view));
         if a > 0.0 {
             let left = if b <= 0.0 { apex } else { view.left };
             go_on(right_end, View { left, ..view });

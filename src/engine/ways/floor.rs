@@ -201,16 +201,8 @@ impl Floor {
                 right,
                 left,
             };
-            let side = (k + 1) % 3;
-            if enter(t, &view)
-                && let Some(next) = mesh.triangle(t).across[side]
-            {
-                let side = mesh.side_along(next, t);
-                sights.push(Sight {
-                    triangle: next,
-                    side,
-                    view,
-                });
+            if enter(t, &view) {
+                sights.extend(Sight::beyond(mesh, (t, (k + 1) % 3), view));
             }
         }
         let enter = |sight: &Sight| enter(sight.triangle, &sight.view);

@@ -106,14 +106,7 @@ impl Seen {
                 left: mesh.border(t, (side + 1) % 3),
             };
             self.views.push((t, target, view));
-            if let Some(next) = mesh.triangle(t).across[side] {
-                let side = mesh.side_along(next, t);
-                sights.push(Sight {
-                    triangle: next,
-                    side,
-                    view,
-                });
-            }
+            sights.extend(Sight::beyond(mesh, (t, side), view));
             meet(floor, (t, side), target, &mut self.targets);
         }
         self.follow(floor, target, sights);
@@ -137,15 +130,8 @@ impl Seen {
                     meet(floor, (t, k), target, &mut self.targets);
                 }
                 let sights = (0..3).filter_map(|side| {
-                    let next = mesh.triangle(t).across[side]?;
                     let ends = [mesh.border(t, side), mesh.border(t, (side + 1) % 3)];
-                    let view = view.through(ends)?;
-                    let side = mesh.side_along(next, t);
-                    Some(Sight {
-                        triangle: next,
-                        side,
-                        view,
-                    })
+                    Sight::beyond(mesh, (t, side), view.through(ends)?)
                 });
                 self.follow(floor, target, sights.collect());
             }

@@ -35,6 +35,14 @@ pub enum Next {
 }
 
 impl Next {
+    /// Its place, meters.
+    pub fn place(&self, floor: &Floor) -> Vector {
+        match *self {
+            Self::Goal(point) | Self::Out(point) => point,
+            Self::Corner { bend, .. } => floor.place(bend),
+        }
+    }
+
     /// The corner, if it is one.
     pub fn bend(&self) -> Option<Bend> {
         match *self {
@@ -61,6 +69,19 @@ pub struct Way {
     pub sight: f64,
     /// The number of the map's entry for this way; `NO_ENTRY` if it has none.
     pub entry: usize,
+}
+
+impl Way {
+    /// A way over no entry of the map, which is soon looked up again.
+    fn without_entry(next: Next, length: f64, distance: f64) -> Self {
+        Self {
+            length,
+            next,
+            distance,
+            sight: 0.0,
+            entry: NO_ENTRY,
+        }
+    }
 }
 
 /// For one goal, the way from any position.
@@ -262,13 +283,8 @@ impl PathMap {
             });
         }
         let view = floor.sight(p, t, held)?;
-        Some(Way {
-            length,
-            next: toward(held, [view.right.at, view.left.at]),
-            distance,
-            sight: 0.0,
-            entry: NO_ENTRY,
-        })
+        let next = toward(held, [view.right.at, view.left.at]);
+        Some(Way::without_entry(next, length, distance))
     }
 
     /// The way from a position in triangle `t` without a visible target: first to a part of the triangle from which a
@@ -285,13 +301,7 @@ impl PathMap {
             let distance = (point - p).norm();
             let length = distance + rest;
             if best.is_none_or(|best| length < best.length) {
-                best = Some(Way {
-                    length,
-                    next: Next::Out(point),
-                    distance,
-                    sight: 0.0,
-                    entry: NO_ENTRY,
-                });
+                best = Some(Way::without_entry(Next::Out(point), length, distance));
             }
         });
         best
@@ -311,13 +321,8 @@ impl PathMap {
         } else {
             beyond
         };
-        Some(Way {
-            length,
-            next: Next::Out(next),
-            distance: (next - p).norm(),
-            sight: 0.0,
-            entry: NO_ENTRY,
-        })
+        let distance = (next - p).norm();
+        Some(Way::without_entry(Next::Out(next), length, distance))
     }
 
     /// The bend after `bend` on the way; `None` if the way from there leads straight to the goal.

@@ -30,14 +30,6 @@ impl Ways {
             .map(|way| way.map_or(f64::INFINITY, |way| way.length))
             .collect()
     }
-
-    /// The point that comes first on a way, meters.
-    pub fn place(&self, next: Next) -> Vector {
-        match next {
-            Next::Goal(point) | Next::Out(point) => point,
-            Next::Corner { bend, .. } => self.floor.place(bend),
-        }
-    }
 }
 
 impl Way {

@@ -215,7 +215,7 @@ impl Ways {
             Next::Goal(point) => First::End(point),
             Next::Out(point) => First::Out(point),
         };
-        let place = self.next(route);
+        let place = way.next.place(&self.floor);
         let way_around = match way.next {
             Next::Corner { bend, borders } => {
                 let (at, corner) = ((p, way.distance), (bend, borders));
@@ -264,10 +264,7 @@ impl Ways {
                 return Some(way);
             }
         }
-        let held = match route.first {
-            First::Corner(bend) => Some(bend),
-            First::End(_) | First::Out(_) => None,
-        };
+        let held = self.first(route).bend();
         let here = floor.locate_from(route.triangle, p);
         let here = here.or_else(|| floor.nearest(p))?;
         let way = map.way(floor, p, here, held)?;
@@ -281,10 +278,7 @@ impl Ways {
 impl Route {
     /// Takes a way from `p` that is at most `excess` meters longer than the shortest.
     fn set(&mut self, floor: &Floor, p: Vector, way: &Way, excess: f64) {
-        let place = match way.next {
-            Next::Corner { bend, .. } => floor.place(bend),
-            Next::Goal(point) | Next::Out(point) => point,
-        };
+        let place = way.next.place(floor);
         (self.found, self.length, self.excess) = (p, way.length, excess);
         let most = (SHARE * way.distance).min(LONGEST).min(way.sight);
         self.reach = floor.mesh.room_before(self.triangle, p, place, most);
@@ -346,10 +340,7 @@ impl Ways {
 
     /// The point that an agent on `route` walks to next, meters: a corner or its goal.
     pub fn next(&self, route: &Route) -> Vector {
-        match route.first {
-            First::Corner(bend) => self.floor.place(bend),
-            First::End(point) | First::Out(point) => point,
-        }
+        self.first(route).place(&self.floor)
     }
 
     fn first(&self, route: &Route) -> Next {

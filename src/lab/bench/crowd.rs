@@ -64,12 +64,12 @@ impl Crowd {
     /// # Errors
     /// The profile does not exist.
     pub fn scene(&self) -> Result<Scene, LabError> {
-        let unknown = || LabError::Data(format!("there is no profile {}", self.profile));
-        let blend = catalog::named(self.profile, &self.parameters).ok_or_else(unknown)?;
+        let blend = catalog::named(self.profile, &self.parameters);
+        let blend = blend.map_err(|error| LabError::Data(error.to_string()))?;
         let mut scene = Scene::default();
         let group = scene.add_group(Group {
             counted: false,
-            ..Group::new("crowd", blend.map_err(|_| unknown())?)
+            ..Group::new("crowd", blend)
         });
         let ahead = if self.streams { AHEAD } else { 0.0 };
         let agent = |(k, place): (usize, Vector)| {

@@ -14,16 +14,6 @@ pub struct Plan {
     pub largest: u32,
 }
 
-impl Default for Plan {
-    fn default() -> Self {
-        Self {
-            repeats: 7,
-            quick: false,
-            largest: 1_000_000,
-        }
-    }
-}
-
 impl Plan {
     /// `usual`, or `few` if the plan is quick.
     pub fn choose<T>(&self, usual: T, few: T) -> T {

@@ -1,7 +1,6 @@
 //! Points → runs → values of all targets. The runs of several points are the cells of a sweep.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::OnceLock;
 
 use serde_json::{Value, json};
 
@@ -9,12 +8,11 @@ use super::scene::{Set, Target};
 use super::study::Calibration;
 use crate::analysis::statistics::MeanStd;
 use crate::lab::error::LabError;
+use crate::lab::jobs::each;
 use crate::lab::sweep::{Cell, Gathered, Shard, State, Study};
 use crate::runs::case::Case;
-use crate::runs::error::StoreError;
 use crate::runs::job::{self, Listener};
 use crate::runs::memory::Memory;
-use crate::runs::parallel::side_by_side;
 use crate::runs::store::Store;
 use crate::scenario::Setting;
 
@@ -123,37 +121,29 @@ impl Evaluator<'_> {
     ) -> Result<(Cells, BTreeMap<Place, State>), LabError> {
         let of = self.calibration;
         let memory = Memory::new(of.memory);
-        let checked: Vec<OnceLock<Result<Case, String>>> =
-            places.iter().map(|_| OnceLock::new()).collect();
-        side_by_side(places.len(), |k| {
+        let checked = each(places.len(), |k| {
             let (point, scene, seed) = places[k];
-            checked[k]
-                .set(self.case(&points[point], scene, seed, &memory))
-                .ok();
-            Ok::<(), StoreError>(())
+            self.case(&points[point], scene, seed, &memory)
         })?;
         let (mut cells, mut failures) = (Vec::new(), BTreeMap::new());
         for (place, case) in places.into_iter().zip(checked) {
-            let (point, scene, _) = place;
-            match case.into_inner() {
-                Some(Ok(case)) => {
-                    let values = of.parameters.iter().zip(of.values(&points[point]));
-                    let values =
-                        values.map(|(parameter, value)| (parameter.name.clone(), json!(value)));
-                    let label = (
-                        "label".to_owned(),
-                        Value::from(of.scenes[scene].name.as_str()),
-                    );
-                    let cell = Cell {
-                        number: cells.len() + 1,
-                        values: std::iter::once(label).chain(values).collect(),
-                        case,
-                    };
-                    cells.push((place, cell));
+            let case = match case {
+                Ok(case) => case,
+                Err(why) => {
+                    failures.insert(place, State::Failed(why));
+                    continue;
                 }
-                Some(Err(why)) => _ = failures.insert(place, State::Failed(why)),
-                None => _ = failures.insert(place, State::Missing),
-            }
+            };
+            let (point, scene, _) = place;
+            let parameters = of.parameters.iter().zip(of.values(&points[point]));
+            let values = parameters.map(|(of, value)| (of.name.clone(), json!(value)));
+            let label = ("label".to_owned(), json!(of.scenes[scene].name));
+            let cell = Cell {
+                number: cells.len() + 1,
+                values: std::iter::once(label).chain(values).collect(),
+                case,
+            };
+            cells.push((place, cell));
         }
         Ok((cells, failures))
     }

@@ -1,10 +1,8 @@
 //! The file of a calibration, as written.
 
-use std::fmt;
-
-use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use serde_untagged::UntaggedEnumVisitor;
 
 use crate::lab::sweep::{Entries, Seeds};
 
@@ -80,11 +78,36 @@ pub(super) struct SceneKeys {
 }
 
 /// A value of a scene; a text stands for its quantity.
-#[derive(Debug)]
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, remote = "Self")]
 pub(super) struct ValueKeys {
     pub quantity: String,
     pub value: Option<f64>,
     pub tolerance: Option<f64>,
+}
+
+impl ValueKeys {
+    /// The value that a case has for this quantity.
+    pub fn of(quantity: &str) -> Self {
+        Self {
+            quantity: quantity.to_owned(),
+            value: None,
+            tolerance: None,
+        }
+    }
+}
+
+/// Not derived: the errors of a derived untagged enum do not name the wrong key.
+impl<'de> Deserialize<'de> for ValueKeys {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        UntaggedEnumVisitor::new()
+            .expecting(
+                "the name of a quantity, or an object with `quantity`, `value` and `tolerance`",
+            )
+            .string(|quantity| Ok(Self::of(quantity)))
+            .map(|keys| Self::deserialize(MapAccessDeserializer::new(keys))) // the derived one
+            .deserialize(deserializer)
+    }
 }
 
 /// The residuals of runs.
@@ -153,48 +176,5 @@ impl Default for Search {
             spread: 0.2,
             seed: 1,
         }
-    }
-}
-
-/// Implemented by hand, because the errors of an untagged enum do not name the wrong key.
-impl<'de> Deserialize<'de> for ValueKeys {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(ValueVisitor)
-    }
-}
-
-struct ValueVisitor;
-
-impl<'de> Visitor<'de> for ValueVisitor {
-    type Value = ValueKeys;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("the name of a quantity, or an object with `quantity`, `value` and `tolerance`")
-    }
-
-    fn visit_str<E>(self, quantity: &str) -> Result<ValueKeys, E> {
-        Ok(ValueKeys {
-            quantity: quantity.to_owned(),
-            value: None,
-            tolerance: None,
-        })
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<ValueKeys, A::Error> {
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct Keys {
-            quantity: String,
-            #[serde(default)]
-            value: Option<f64>,
-            #[serde(default)]
-            tolerance: Option<f64>,
-        }
-        let keys = Keys::deserialize(MapAccessDeserializer::new(entries))?;
-        Ok(ValueKeys {
-            quantity: keys.quantity,
-            value: keys.value,
-            tolerance: keys.tolerance,
-        })
     }
 }

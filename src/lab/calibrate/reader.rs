@@ -1,37 +1,42 @@
 //! Reads the scenes of a file with their measured values.
 
+use std::cell::OnceCell;
+
 use super::file::{SceneKeys, ValueKeys};
 use super::parameter::places;
-use super::scene::{Reading, Scene, Set, Target, checks};
+use super::scene::{Scene, Set, Target};
 use super::study::check_text;
-use crate::lab::suite::Expected;
-use crate::lab::sweep::{Entries, Root, Study, source};
-use crate::lab::validate::VALIDATION;
+use crate::lab::suite::{Check, Expected, Suite};
+use crate::lab::sweep::{Changes, Entries, Study, Written, source};
 use crate::runs::case::Case;
 use crate::runs::memory::Memory;
-use crate::runs::summary::Summary;
 use crate::scenario::measurements::Measurement;
 use crate::scenario::quote::shown;
 use crate::scenario::{Problem, Setting, suggestion};
 
-/// The profile of the validation's cases unless the file's settings have another.
+/// The suite whose cases can be scenes.
+const VALIDATION: &str = "validation";
+/// The profile of its runs unless the file's settings have another.
 const PROFILE: &str = "sph";
 /// Largest tolerance, as a fraction of the measured value.
 const LARGEST_TOLERANCE: f64 = 10.0;
 
+/// The validation and its runs, when the first of its cases was read.
+pub(super) type Validation = OnceCell<(Suite, Study)>;
+
 /// Reads the scenes of a file.
 pub(super) struct Reader<'a> {
-    pub root: Root<'a>,
+    /// The file.
+    pub from: &'a Written,
     /// Settings of all scenes.
     pub settings: &'a Entries,
-    /// The runs of the validation, when the first of its cases was read.
-    pub validation: Option<Study>,
+    pub validation: &'a Validation,
     pub memory: &'a Memory,
     pub scenes: Vec<Scene>,
     pub targets: Vec<Target>,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
     /// Adds the scene at `place` with its values.
     pub fn add(&mut self, set: Set, keys: &SceneKeys, place: &str) -> Result<(), Problem> {
         match (&keys.case, &keys.scenario) {
@@ -49,8 +54,14 @@ impl Reader<'_> {
         if keys.name.is_some() {
             return Err(Problem::new(at("name"), "belongs to an own `scenario`"));
         }
-        let Some(case) = VALIDATION.without_data().find(|case| case.id == id) else {
-            let ids: Vec<&str> = VALIDATION.without_data().map(|case| case.id).collect();
+        let (suite, study) = self
+            .validation()
+            .map_err(|error| Problem::new(place, error))?;
+        let Some(case) = suite.without_data().find(|case| case.name == id) else {
+            let ids: Vec<&str> = suite
+                .without_data()
+                .map(|case| case.name.as_str())
+                .collect();
             let near = suggestion(id, ids.iter().copied());
             let reason = format!(
                 "no case is called `{}`{near} (there are {})",
@@ -59,37 +70,22 @@ impl Reader<'_> {
             );
             return Err(Problem::new(at("case"), reason));
         };
-        let checks = checks(case, "", &Summary::default());
-        let checks = checks.map_err(|error| Problem::new(place, error.to_string()))?;
-        let known = checks
+        let measured = case
+            .checks
             .iter()
-            .enumerate()
-            .filter_map(|(k, check)| match check.expected {
-                Expected::Near { value, tolerance } => {
-                    Some((k, check, check.run?, value, tolerance))
-                }
-                _ => None,
-            });
-        let known: Vec<_> = known.collect();
-        let all: Vec<ValueKeys> = known
-            .iter()
-            .map(|(_, check, ..)| ValueKeys::of(&check.quantity))
-            .collect();
+            .filter(|check| check.expected.is_measured());
+        let measured: Vec<&Check> = measured.collect();
+        let all = measured.iter().map(|check| ValueKeys::of(&check.name));
+        let all: Vec<ValueKeys> = all.collect();
         for (k, wanted) in keys.values.as_ref().unwrap_or(&all).iter().enumerate() {
             let place = format!("{place}.values[{k}]");
-            let is_meant = |quantity: &str| {
-                let rest = quantity.strip_prefix(wanted.quantity.as_str());
+            let is_meant = |check: &&&Check| {
+                let rest = check.name.strip_prefix(wanted.quantity.as_str());
                 rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
             };
-            let meant = known
-                .iter()
-                .filter(|(_, check, ..)| is_meant(&check.quantity));
-            let meant: Vec<_> = meant.collect();
+            let meant: Vec<&&Check> = measured.iter().filter(is_meant).collect();
             if meant.is_empty() {
-                let names: Vec<&str> = known
-                    .iter()
-                    .map(|(_, check, ..)| check.quantity.as_str())
-                    .collect();
+                let names: Vec<&str> = measured.iter().map(|check| check.name.as_str()).collect();
                 let reason = format!(
                     "case {id} has no quantity `{}`; it has {}",
                     shown(&wanted.quantity),
@@ -101,23 +97,31 @@ impl Reader<'_> {
                 let reason = format!("means {} quantities, and gives one value", meant.len());
                 return Err(Problem::new(place, reason));
             }
-            for &&(number, check, run, value, tolerance) in &meant {
-                let base = self
-                    .validated(run)
-                    .map_err(|error| Problem::new(&place, error))?;
-                let scene = self.scene(run.to_owned(), base, &keys.settings, &place)?;
-                self.target(
-                    Target {
-                        set,
-                        scene,
-                        of: case.id.to_owned(),
-                        quantity: check.quantity.clone(),
-                        measured: wanted.value.unwrap_or(value),
-                        tolerance: wanted.tolerance.unwrap_or(tolerance),
-                        reading: Reading::Check(case, run, number),
+            for &&check in &meant {
+                let (
+                    [run],
+                    Expected::Near {
+                        value: Some(value),
+                        tolerance,
                     },
-                    &place,
-                )?;
+                ) = (&check.of[..], check.expected)
+                else {
+                    continue;
+                };
+                let cell = study.cells.iter().find(|cell| cell.label() == Some(run));
+                let missing = || Problem::new(&place, format!("the validation has no run {run}"));
+                let base = cell.ok_or_else(missing)?.case.clone();
+                let scene = self.scene(run.clone(), base, &keys.settings, &place)?;
+                let target = Target {
+                    set,
+                    scene,
+                    of: case.name.clone(),
+                    quantity: check.name.clone(),
+                    measured: wanted.value.unwrap_or(value),
+                    tolerance: wanted.tolerance.unwrap_or(tolerance),
+                    check: check.clone(),
+                };
+                self.target(target, &place)?;
             }
         }
         Ok(())
@@ -131,7 +135,7 @@ impl Reader<'_> {
         place: &str,
     ) -> Result<(), Problem> {
         let at = |key: &str| format!("{place}.{key}");
-        let found = source(file, &at("scenario"), self.root)?;
+        let found = source(file, &at("scenario"), self.from)?;
         let refused = |error| Problem::new(at("scenario"), format!("{error}"));
         let base = Case::new(found, Vec::new(), self.memory).map_err(refused)?;
         let given = keys.values.as_deref().unwrap_or_default();
@@ -170,24 +174,26 @@ impl Reader<'_> {
                 quantity: quantity.clone(),
                 measured,
                 tolerance,
-                reading: Reading::Metric(quantity.clone()),
+                check: Check::of_metric(quantity),
             };
             self.target(target, &place)?;
         }
         Ok(())
     }
 
-    /// The run of the validation with this label.
-    fn validated(&mut self, label: &str) -> Result<Case, String> {
-        let study = match self.validation.take() {
-            Some(study) => study,
-            None => Study::built_in_for(VALIDATION.name, &[PROFILE.to_owned()], Some(1))
-                .map_err(|error| error.to_string())?,
+    /// The validation with its runs.
+    fn validation(&self) -> Result<&'a (Suite, Study), String> {
+        if let Some(known) = self.validation.get() {
+            return Ok(known);
+        }
+        let suite = Suite::built_in(VALIDATION).map_err(|error| error.to_string())?;
+        let changes = Changes {
+            profiles: &[PROFILE.to_owned()],
+            seeds: Some(1),
+            ..Changes::default()
         };
-        let cell = study.cells.iter().find(|cell| cell.label() == Some(label));
-        let case = cell.map(|cell| cell.case.clone());
-        self.validation = Some(study);
-        case.ok_or_else(|| format!("the validation has no run {label}"))
+        let study = suite.study(&changes).map_err(|error| error.to_string())?;
+        Ok(self.validation.get_or_init(|| (suite, study)))
     }
 
     /// The number of the scene with the common settings and its own; it is added if it is new.
@@ -263,15 +269,5 @@ impl Reader<'_> {
         }
         self.targets.push(target);
         Ok(())
-    }
-}
-
-impl ValueKeys {
-    fn of(quantity: &str) -> Self {
-        Self {
-            quantity: quantity.to_owned(),
-            value: None,
-            tolerance: None,
-        }
     }
 }

@@ -95,6 +95,21 @@ pub struct ValueResult {
     pub best: Errors,
 }
 
+/// The values of one set.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SetResult {
+    /// The set.
+    pub set: Set,
+    /// The number of its values.
+    pub values: usize,
+    /// The root mean square of the residuals with the starting point, tolerances.
+    pub start: f64,
+    /// The same with the best point.
+    pub best: f64,
+    /// The number of values within the tolerance with the best point.
+    pub within: usize,
+}
+
 impl Errors {
     fn of(sample: &Sample, target: &Target, calibration: &Calibration) -> Self {
         let values = sample.values();
@@ -110,7 +125,7 @@ impl Errors {
     }
 
     /// Whether the value is within the tolerance with all seeds.
-    pub(super) fn is_within(&self, tolerance: f64) -> bool {
+    fn is_within(&self, tolerance: f64) -> bool {
         let error = self.error.is_some_and(|error| error.abs() <= tolerance);
         error && self.failures.is_empty()
     }
@@ -164,15 +179,25 @@ impl Report<'_> {
         of.targets.iter().enumerate().map(result).collect()
     }
 
-    /// The root mean square of a set's residuals with the starting and with the best point, tolerances; `None` for a
-    /// set without values.
-    pub fn misfits(&self, set: Set) -> Option<[f64; 2]> {
-        let of = self.calibration;
-        let [start, best] = self.found.compared.each_ref().map(|at| {
-            let own = at.samples.iter().zip(&of.targets);
-            root_mean_square(own.filter(|(_, target)| target.set == set), &of.rule)
-        });
-        Some([start?, best?])
+    /// How close the runs come to the values of each set that has any.
+    pub fn sets(&self) -> Vec<SetResult> {
+        let (of, values) = (self.calibration, self.values());
+        let result = |set: Set| {
+            let [start, best] = self.found.compared.each_ref().map(|at| {
+                let own = at.samples.iter().zip(&of.targets);
+                root_mean_square(own.filter(|(_, target)| target.set == set), &of.rule)
+            });
+            let own = || values.iter().filter(|value| value.set == set);
+            let within = own().filter(|value| value.best.is_within(value.tolerance));
+            Some(SetResult {
+                set,
+                values: own().count(),
+                start: start?,
+                best: best?,
+                within: within.count(),
+            })
+        };
+        Set::ALL.into_iter().filter_map(result).collect()
     }
 
     /// The number of trials of the search, the number of all trials, and the number of their runs without a value.
@@ -197,14 +222,6 @@ impl Report<'_> {
             let row = searched.clone().map(|b| of.correlation(a, b));
             row.collect::<Vec<_>>()
         });
-        let misfits = Set::ALL.into_iter().filter_map(|set| {
-            let [start, best] = self.misfits(set)?;
-            let of_set = self.values().into_iter().filter(|value| value.set == set);
-            let within = |value: &ValueResult| value.best.is_within(value.tolerance);
-            let all: Vec<ValueResult> = of_set.collect();
-            let within = all.iter().filter(|value| within(value)).count();
-            Some(json!({"set": set, "values": all.len(), "start": start, "best": best, "within": within}))
-        });
         let names = of
             .parameters
             .iter()
@@ -223,7 +240,7 @@ impl Report<'_> {
             "parameters": self.parameters(),
             "searched": self.found.searched.iter().map(|&k| &of.parameters[k].name).collect::<Vec<_>>(),
             "correlations": correlations.collect::<Vec<_>>(),
-            "misfits": misfits.collect::<Vec<_>>(),
+            "misfits": self.sets(),
             "values": self.values(),
             "screening": screening,
             "generations": generations.collect::<Vec<_>>(),

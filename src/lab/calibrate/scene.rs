@@ -3,11 +3,8 @@
 use serde::Serialize;
 
 use super::file::Rule;
-use crate::lab::error::LabError;
-use crate::lab::suite::{Case as Judged, Check, Runs};
-use crate::lab::validate::VALIDATION;
+use crate::lab::suite::Check;
 use crate::runs::case::{Case, RunResult};
-use crate::runs::summary::Summary;
 
 /// The measurement of people who pass through walls.
 const THROUGH_WALLS: &str = "agents_through_walls";
@@ -66,16 +63,8 @@ pub struct Target {
     pub measured: f64,
     /// The tolerance, as a fraction of the measured value.
     pub tolerance: f64,
-    pub(super) reading: Reading,
-}
-
-/// The source of a run's value.
-#[derive(Clone)]
-pub(super) enum Reading {
-    /// A check of a case of the validation: its number.
-    Check(&'static Judged, &'static str, usize),
-    /// A measurement.
-    Metric(String),
+    /// Gives the value of a run.
+    pub(super) check: Check,
 }
 
 impl Target {
@@ -88,14 +77,7 @@ impl Target {
         if let Some(why) = scene.stuck(run, rule.stuck_secs) {
             return Err(why);
         }
-        let value = match &self.reading {
-            Reading::Metric(name) => run.summary.metric(name),
-            Reading::Check(case, label, number) => {
-                let checks =
-                    checks(case, label, &run.summary).map_err(|error| error.to_string())?;
-                checks[*number].value
-            }
-        };
+        let value = self.check.value(|_| Some(&run.summary));
         match value {
             Some(value) if value > 0.0 => Ok(value),
             Some(value) => Err(format!("{} is {value}", self.quantity)),
@@ -129,23 +111,4 @@ impl Scene {
             None => format!("stuck: {left} people are left"),
         })
     }
-}
-
-/// The checks of a case, of which only this run is known.
-pub(super) fn checks(
-    case: &Judged,
-    label: &str,
-    summary: &Summary,
-) -> Result<Vec<Check>, LabError> {
-    let blank = Summary::default();
-    let own = case.runs.iter().map(|run| match *run == label {
-        true => (*run, summary),
-        false => (*run, &blank),
-    });
-    let own = own.collect();
-    (case.judge)(&Runs {
-        suite: VALIDATION.name,
-        own,
-        measured: &[],
-    })
 }

@@ -7,13 +7,13 @@ use serde_json::Value;
 
 use super::file::{File, Rule, SceneKeys, Screening, Search};
 use super::parameter::Parameter;
-use super::reader::Reader;
+use super::reader::{Reader, Validation};
 use super::scene::{Scene, Set, Target};
 use crate::analysis::cma_es::{CmaEs, LEAST_POPULATION};
-use crate::lab::sweep::{Root, Seeds, check_name, parse};
+use crate::lab::sweep::{Seeds, Written, check_name};
 use crate::runs::memory::Memory;
 use crate::scenario::quote::shown;
-use crate::scenario::{Problem, ScenarioError, Setting, built_in, input, read_document};
+use crate::scenario::{Problem, ScenarioError, Setting};
 
 /// Most parameters.
 const MOST_PARAMETERS: usize = 50;
@@ -59,19 +59,7 @@ impl Calibration {
     /// # Errors
     /// The first problem, with its place in the file.
     pub fn open(path: &Path, memory: Option<u64>) -> Result<Self, ScenarioError> {
-        let name = path.to_str().filter(|_| !path.exists());
-        let shipped = name.map(|name| Path::new("calibration").join(format!("{name}.json")));
-        if let Some((path, text)) = shipped.and_then(|path| Some((path.clone(), built_in(&path)?)))
-        {
-            let (path, built_in) = (path.as_path(), true);
-            return Self::parse_within(text, Root { path, built_in }, memory);
-        }
-        let text = input::text(path).map_err(|error| ScenarioError::Unreadable {
-            file: path.display().to_string(),
-            reason: error.to_string(),
-        })?;
-        let built_in = false;
-        Self::parse_within(&text, Root { path, built_in }, memory)
+        Self::of(&Written::open(path, "calibration")?, memory)
     }
 
     /// Reads a calibration from JSON. `path` is its name in messages; files that it refers to are relative to the
@@ -80,26 +68,22 @@ impl Calibration {
     /// # Errors
     /// As [`open`](Self::open).
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
-        let built_in = false;
-        Self::parse_within(text, Root { path, built_in }, None)
+        Self::of(&Written::of(text, path), None)
     }
 
-    fn parse_within(text: &str, root: Root, memory: Option<u64>) -> Result<Self, ScenarioError> {
-        let file = root.path.display().to_string();
-        let document = read_document(text, &file)?;
-        let stem = root.path.file_stem().unwrap_or_default().to_string_lossy();
-        let checked = parse(text, "`parameters` and `fit`");
-        let checked = checked.and_then(|keys| Self::checked(keys, document, &stem, (root, memory)));
-        checked.map_err(|problem| ScenarioError::Invalid { file, problem })
+    fn of(from: &Written, memory: Option<u64>) -> Result<Self, ScenarioError> {
+        let (document, keys) = from.parsed("`parameters` and `fit`")?;
+        let checked = Self::checked(keys, document, from, memory);
+        checked.map_err(|problem| from.invalid(problem))
     }
 
     fn checked(
         keys: File,
         document: Value,
-        stem: &str,
-        (root, memory): (Root, Option<u64>),
+        from: &Written,
+        memory: Option<u64>,
     ) -> Result<Self, Problem> {
-        let name = keys.name.clone().unwrap_or_else(|| stem.to_owned());
+        let name = keys.name.clone().unwrap_or_else(|| from.stem());
         check_name(&name)?;
         check_numbers(&keys)?;
         let seeds = |given: Option<&Seeds>, other: &[u64]| match given {
@@ -113,10 +97,11 @@ impl Calibration {
             ..problem
         })?;
         let shared = Memory::new(memory);
+        let validation = Validation::new();
         let mut reader = Reader {
-            root,
+            from,
             settings: &keys.settings,
-            validation: None,
+            validation: &validation,
             memory: &shared,
             scenes: Vec::new(),
             targets: Vec::new(),
@@ -265,53 +250,40 @@ fn parameters(all: Vec<super::file::ParameterKeys>) -> Result<Vec<Parameter>, Pr
 
 /// Checks that the numbers of the residual, the screening and the search are within their ranges.
 fn check_numbers(keys: &File) -> Result<(), Problem> {
-    let within =
-        |place: &str, value: f64, [least, most]: [f64; 2]| match (least..=most).contains(&value) {
-            true => Ok(()),
-            false => {
-                let reason = format!("must be at least {least} and at most {most}, not {value}");
-                Err(Problem::new(place, reason))
-            }
-        };
-    let Rule {
-        clip,
-        penalty,
-        stuck_secs,
-    } = keys.residual;
-    within("residual.clip", clip, [1.0, LARGEST_RESIDUAL])?;
-    within("residual.penalty", penalty, [clip, LARGEST_RESIDUAL])?;
-    within("residual.stuck_secs", stuck_secs, [0.0, 1e9])?;
-    if let Some(screening) = &keys.screening {
-        let trajectories = screening.trajectories as f64;
-        within(
+    let (rule, search) = (&keys.residual, &keys.search);
+    let screening = keys.screening.unwrap_or_default();
+    let population = search.population.unwrap_or(LEAST_POPULATION) as f64;
+    let populations = [LEAST_POPULATION as f64, MOST_POINTS as f64];
+    let trajectories = screening.trajectories as f64;
+    let generations = [1.0, MOST_GENERATIONS as f64];
+    for (place, value, [least, most]) in [
+        ("residual.clip", rule.clip, [1.0, LARGEST_RESIDUAL]),
+        (
+            "residual.penalty",
+            rule.penalty,
+            [rule.clip, LARGEST_RESIDUAL],
+        ),
+        ("residual.stuck_secs", rule.stuck_secs, [0.0, 1e9]),
+        (
             "screening.trajectories",
             trajectories,
             [1.0, MOST_POINTS as f64],
-        )?;
-        within(
+        ),
+        (
             "screening.drop_below",
             screening.drop_below,
             [0.0, LARGEST_RESIDUAL],
-        )?;
+        ),
+        ("search.population", population, populations),
+        ("search.generations", search.generations as f64, generations),
+        ("search.spread", search.spread, [1e-3, 1.0]),
+    ] {
+        if !(least..=most).contains(&value) {
+            let reason = format!("must be at least {least} and at most {most}, not {value}");
+            return Err(Problem::new(place, reason));
+        }
     }
-    let Search {
-        population,
-        generations,
-        spread,
-        ..
-    } = keys.search;
-    let population = population.unwrap_or(LEAST_POPULATION) as f64;
-    within(
-        "search.population",
-        population,
-        [LEAST_POPULATION as f64, MOST_POINTS as f64],
-    )?;
-    within(
-        "search.generations",
-        generations as f64,
-        [1.0, MOST_GENERATIONS as f64],
-    )?;
-    within("search.spread", spread, [1e-3, 1.0])
+    Ok(())
 }
 
 /// Whether the name is short and printable.

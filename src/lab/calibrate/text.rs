@@ -30,21 +30,15 @@ impl Report<'_> {
         let of = self.calibration;
         let values = self.values();
         let mut text = format!("# {}\n\n", of.name);
-        for set in Set::ALL {
-            if let Some([start, best]) = self.misfits(set) {
-                let own: Vec<&ValueResult> =
-                    values.iter().filter(|value| value.set == set).collect();
-                let within = own
-                    .iter()
-                    .filter(|value| value.best.is_within(value.tolerance));
-                text += &format!(
-                    "- {}: {best:.2} tolerances (root mean square; {start:.2} at the start), {} of {} values within \
-                     the tolerance\n",
-                    set.name(),
-                    within.count(),
-                    own.len()
-                );
-            }
+        for of in self.sets() {
+            text += &format!(
+                "- {}: {:.2} tolerances (root mean square; {:.2} at the start), {} of {} values within the tolerance\n",
+                of.set.name(),
+                of.best,
+                of.start,
+                of.within,
+                of.values
+            );
         }
         let [search, points, failures] = self.counts();
         let generations = self.found.generations.len();

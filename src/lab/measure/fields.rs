@@ -81,7 +81,7 @@ impl View {
         let mut near = Vec::new();
         site.walls.near(p, kernel.support_radius, &mut near);
         Some(Self {
-            hidden: site.share(p, &near, kernel),
+            hidden: kernel.share(&site.walls, p, &near),
             near: near.into_boxed_slice(),
         })
     }

@@ -12,7 +12,8 @@ pub struct Person {
     pub id: i64,
     /// Meters.
     pub position: Vector,
-    /// The point from which the person sees and is seen, meters: see [`Hidden::eye`](crate::analysis::site::Hidden::eye).
+    /// The point from which the person sees and is seen, meters: see
+    /// [`Hidden::eye`](crate::analysis::site::Hidden::eye).
     pub eye: Vector,
     /// 1 = an average person.
     pub mass: f64,

@@ -5,9 +5,9 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::condition::Condition;
-use crate::analysis::stability::Mode;
 use crate::engine::agents::{Agents, NewAgent};
 use crate::engine::clock::Clock;
+use crate::engine::forces::rates::Rates;
 use crate::engine::geometry::Polygon;
 use crate::engine::math::Vector;
 use crate::engine::period::{Axis, Period};
@@ -316,8 +316,8 @@ impl Rest {
     }
 
     /// The fastest mode of both rooms.
-    pub fn mode(&self) -> Mode {
-        Mode::of(&self.scene(LOOSE, 1.0))
+    pub fn mode(&self) -> Rates {
+        Rates::of(&self.scene(LOOSE, 1.0))
     }
 }
 

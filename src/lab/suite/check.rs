@@ -1,146 +1,191 @@
-//! A measured quantity with its expectation.
+//! Judgments: values of checks beside what is expected.
 
 use serde::Serialize;
+
+use super::keys::{Case, Check, Expected};
+use super::quantity::Quantity;
+use crate::lab::error::LabError;
+use crate::runs::summary::Summary;
 
 /// Limits such as 1.6 are not exact in binary.
 const ROUNDING: f64 = 1e-9;
 
-/// The expectation for a quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Expected {
-    /// A value between two, inclusive; infinite if there is no bound.
-    Between([f64; 2]),
-    /// A measured value, with a tolerance as a fraction of it.
-    Near {
-        /// The measured value.
-        value: f64,
-        /// The tolerance.
-        tolerance: f64,
-    },
-    /// Any value: it is reported.
-    Any,
+/// The results of one profile and one seed, by label.
+pub struct Runs<'a> {
+    /// The results of all cases.
+    pub own: Vec<(&'a str, &'a Summary)>,
+    /// The measurements in the data from which runs begin, by the labels of the runs.
+    pub measured: &'a [(String, Summary)],
 }
 
-/// A measured quantity of one case.
+/// A value beside what is expected.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Check {
-    /// Its name and unit.
+pub struct Judgment {
+    /// The name of the quantity, and its unit.
     pub quantity: String,
     /// The value; `None` if the run gave none.
     pub value: Option<f64>,
     /// The expectation.
     pub expected: Expected,
-    /// The label of the run that gives the value; `None` if several do.
+    /// The label of the run that is compared with a measured value.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub run: Option<&'static str>,
+    pub run: Option<String>,
+}
+
+impl Runs<'_> {
+    /// The profile; empty without runs.
+    pub fn profile(&self) -> &str {
+        self.own.first().map_or("", |(_, run)| &run.profile)
+    }
+
+    /// The seed; 0 without runs.
+    pub fn seed(&self) -> u64 {
+        self.own.first().map_or(0, |(_, run)| run.seed)
+    }
+
+    /// The results of a run.
+    pub fn of(&self, label: &str) -> Option<&Summary> {
+        let mut own = self.own.iter();
+        own.find(|(own, _)| *own == label).map(|(_, run)| *run)
+    }
+
+    /// The measurements in the data from which a run begins; `None` if it begins without data.
+    pub fn data(&self, label: &str) -> Option<&Summary> {
+        let mut measured = self.measured.iter();
+        measured.find(|(own, _)| own == label).map(|(_, data)| data)
+    }
+}
+
+impl Case {
+    /// The description with the source.
+    pub fn title(&self) -> String {
+        match &self.source {
+            Some(source) => format!("{} ({source})", self.about),
+            None => self.about.clone(),
+        }
+    }
+
+    /// The labels of its runs.
+    pub fn runs(&self) -> impl Iterator<Item = &str> {
+        let checked = self.checks.iter().flat_map(|check| &check.of);
+        let drawn = self.picture.iter().map(|picture| &picture.run);
+        checked.chain(drawn).map(String::as_str)
+    }
+
+    /// Whether `name` refers to it: its name, or its number without the letter.
+    pub fn is_named(&self, name: &str) -> bool {
+        let letter = |rest: &str| rest.len() == 1 && rest.chars().all(|c| c.is_ascii_lowercase());
+        let rest = self.name.strip_prefix(name);
+        rest.is_some_and(|rest| rest.is_empty() || letter(rest))
+    }
 }
 
 impl Check {
-    /// A value that must lie between two.
-    pub fn between(quantity: impl Into<String>, value: Option<f64>, low: f64, high: f64) -> Self {
+    /// A check that any value passes of a measured quantity.
+    pub fn of_metric(name: &str) -> Self {
         Self {
-            quantity: quantity.into(),
-            value,
-            expected: Expected::Between([low, high]),
-            run: None,
-        }
-    }
-
-    /// A value that must be within a tolerance, a fraction, of a measured one.
-    pub fn near(
-        quantity: impl Into<String>,
-        value: Option<f64>,
-        (measured, tolerance): (f64, f64),
-    ) -> Self {
-        Self {
-            quantity: quantity.into(),
-            value,
-            expected: Expected::Near {
-                value: measured,
-                tolerance,
-            },
-            run: None,
-        }
-    }
-
-    /// The same check of a value that this run gives.
-    #[must_use]
-    pub fn of_run(self, label: &'static str) -> Self {
-        Self {
-            run: Some(label),
-            ..self
-        }
-    }
-
-    /// A value that must not exceed `high`.
-    pub fn at_most(quantity: impl Into<String>, value: Option<f64>, high: f64) -> Self {
-        Self::between(quantity, value, f64::NEG_INFINITY, high)
-    }
-
-    /// A value that must not be below `low`.
-    pub fn at_least(quantity: impl Into<String>, value: Option<f64>, low: f64) -> Self {
-        Self::between(quantity, value, low, f64::INFINITY)
-    }
-
-    /// A value that must be this number.
-    pub fn exactly(quantity: impl Into<String>, value: Option<f64>, number: f64) -> Self {
-        Self::between(quantity, value, number, number)
-    }
-
-    /// A value that is reported.
-    pub fn reported(quantity: impl Into<String>, value: Option<f64>) -> Self {
-        Self {
-            quantity: quantity.into(),
-            value,
+            name: name.to_owned(),
+            quantity: vec![Quantity::Named(name.to_owned())],
+            of: vec![String::new()],
+            function: None,
+            at: None,
             expected: Expected::Any,
-            run: None,
         }
+    }
+
+    /// The name of its quantity, if it is a measured one.
+    pub fn metric(&self) -> Option<&str> {
+        match &self.quantity[..] {
+            [Quantity::Named(name)] => Some(name),
+            _ => None,
+        }
+    }
+
+    /// The value from these runs; `None` if one of them gives none.
+    pub fn value<'a>(&self, run: impl Fn(&str) -> Option<&'a Summary>) -> Option<f64> {
+        let runs = self.of.iter().map(|label| run(label));
+        let values = runs.flat_map(|run| self.quantity.iter().map(move |of| of.value(run?)));
+        let values: Vec<f64> = values.collect::<Option<_>>()?;
+        match self.function {
+            Some(function) => Some(function.of(&values)),
+            None => values.first().copied(),
+        }
+    }
+
+    /// The value and the expectation of these runs.
+    ///
+    /// # Errors
+    /// The data from which a run begins do not give the expected value.
+    pub fn judged(&self, runs: &Runs) -> Result<Judgment, LabError> {
+        let mut expected = self.expected;
+        if let Expected::Near {
+            value: value @ None,
+            ..
+        } = &mut expected
+        {
+            let in_data = self.value(|label| runs.data(label));
+            let missing =
+                || LabError::missing(self.of.join(", "), format!("{} in the data", self.name));
+            *value = Some(in_data.ok_or_else(missing)?);
+        }
+        let run = self.of.first().filter(|_| expected.is_measured());
+        Ok(Judgment {
+            quantity: self.name.clone(),
+            value: self.value(|label| runs.of(label)),
+            expected,
+            run: run.cloned(),
+        })
+    }
+}
+
+impl Expected {
+    /// Whether it is a measured value.
+    pub fn is_measured(&self) -> bool {
+        matches!(self, Self::Near { .. })
     }
 
     /// The bounds of the value, inclusive; infinite if there are none.
     pub fn bounds(&self) -> [f64; 2] {
-        match self.expected {
-            Expected::Any => [f64::NEG_INFINITY, f64::INFINITY],
-            Expected::Near { value, tolerance } => {
-                [1.0 - tolerance, 1.0 + tolerance].map(|part| value * part)
+        match *self {
+            Self::Any => [f64::NEG_INFINITY, f64::INFINITY],
+            Self::Near { value, tolerance } => {
+                [1.0 - tolerance, 1.0 + tolerance].map(|part| value.unwrap_or(f64::NAN) * part)
             }
-            Expected::Between(bounds) => bounds,
+            Self::Between(bounds) => bounds,
         }
     }
+}
 
+/// The expectation, in words.
+impl std::fmt::Display for Expected {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match *self {
+            Self::Any => f.write_str("reported"),
+            Self::Near { value, tolerance } => {
+                let value = (1e3 * value.unwrap_or(f64::NAN)).round() / 1e3; // measured in data: with all digits
+                write!(f, "{value} ± {} %", (100.0 * tolerance).round())
+            }
+            Self::Between([low, high]) if low == high => write!(f, "{low}"),
+            Self::Between([f64::NEG_INFINITY, high]) => write!(f, "at most {high}"),
+            Self::Between([low, f64::INFINITY]) => write!(f, "at least {low}"),
+            Self::Between([low, high]) => write!(f, "{low} to {high}"),
+        }
+    }
+}
+
+impl Judgment {
     /// Whether the value is as expected. A missing value passes only if any value would.
     pub fn is_passed(&self) -> bool {
-        let [low, high] = self.bounds();
+        let [low, high] = self.expected.bounds();
         let range = low - ROUNDING..=high + ROUNDING;
         self.expected == Expected::Any || self.value.is_some_and(|value| range.contains(&value))
-    }
-
-    /// Whether the value is compared with a measured one.
-    pub fn is_compared(&self) -> bool {
-        matches!(self.expected, Expected::Near { .. })
     }
 
     /// The difference of the value from a measured one, as a fraction of the measured value.
     pub fn error(&self) -> Option<f64> {
         match self.expected {
-            Expected::Near { value, .. } => Some(self.value? / value - 1.0),
+            Expected::Near { value, .. } => Some(self.value? / value? - 1.0),
             _ => None,
-        }
-    }
-
-    /// The expectation, in words.
-    pub fn expected_written(&self) -> String {
-        match self.expected {
-            Expected::Any => "reported".to_owned(),
-            Expected::Near { value, tolerance } => {
-                let value = (1e3 * value).round() / 1e3; // measured in data: with all digits
-                format!("{value} ± {} %", (100.0 * tolerance).round())
-            }
-            Expected::Between([low, high]) if low == high => format!("{low}"),
-            Expected::Between([f64::NEG_INFINITY, high]) => format!("at most {high}"),
-            Expected::Between([low, f64::INFINITY]) => format!("at least {low}"),
-            Expected::Between([low, high]) => format!("{low} to {high}"),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A picture of each case.
 
-use super::Case;
+use super::keys::{Case, Moment};
+use super::known::label;
 use crate::engine::simulation::{Fault, Simulation};
 use crate::lab::error::LabError;
 use crate::lab::sweep::Cell;
@@ -17,23 +18,27 @@ pub fn save(
     store: &Store,
     listener: &dyn Listener,
 ) -> Result<(), LabError> {
-    listener.notes(&format!("drawing {} picture(s)", cases.len()));
-    side_by_side(cases.len(), |k| {
-        let (label, at) = cases[k].picture;
-        let cell = cells.iter().find(|cell| cell.label() == Some(label));
-        let cell = cell.ok_or_else(|| LabError::missing(cases[k].id, "run for its picture"))?;
-        let failed = |error| LabError::of(label, error);
+    let drawn = cases
+        .iter()
+        .filter_map(|case| Some((&case.name, case.picture.as_ref()?)));
+    let drawn: Vec<(&String, &Moment)> = drawn.collect();
+    listener.notes(&format!("drawing {} picture(s)", drawn.len()));
+    side_by_side(drawn.len(), |k| {
+        let (name, Moment { run, at_secs }) = drawn[k];
+        let cell = cells.iter().find(|cell| label(cell) == run);
+        let cell = cell.ok_or_else(|| LabError::missing(name, "run for its picture"))?;
+        let failed = |error| LabError::of(run, error);
         let scenario = cell.case.scenario();
-        let scenario = scenario.map_err(|error| LabError::of(label, error))?;
+        let scenario = scenario.map_err(|error| LabError::of(run, error))?;
         let mut simulation = Simulation::new(scenario.scene.clone()).map_err(failed)?;
-        go_to(at, &mut simulation).map_err(failed)?;
-        let (crowd, title) = (Crowd::of(&simulation), format!("{}: {label}", cases[k].id));
+        go_to(*at_secs, &mut simulation).map_err(failed)?;
+        let (crowd, title) = (Crowd::of(&simulation), format!("{name}: {run}"));
         let picture = Picture {
             body_mass: scenario.mass_on_walls(),
             labels: &scenario.labels,
             ..Picture::of(&simulation, &crowd, title, scenario.view.region)
         };
-        let path = store.path(&format!("{}.png", cases[k].id));
+        let path = store.path(&format!("{name}.png"));
         picture.save(&path, &Print::of_program())?;
         Ok(())
     })

@@ -2,58 +2,71 @@
 
 use serde_json::json;
 
-use super::{Case, Check, Skipped, Suite, THROUGH_WALLS};
+use super::check::Judgment;
+use super::file::Suite;
+use super::keys::Case;
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
 use crate::output::table::Table;
 use crate::runs::store::Store;
 
+/// The name of the check of walls.
+pub const THROUGH_WALLS: &str = "people through walls";
+
 /// The checks of one case with one profile and seed.
 #[derive(Clone)]
-pub struct Finding {
+pub struct Finding<'a> {
     /// The case.
-    pub case: &'static Case,
+    pub case: &'a Case,
     /// The profile.
     pub profile: String,
     /// The seed; `None` for means over seeds.
     pub seed: Option<u64>,
-    /// The checks.
-    pub checks: Vec<Check>,
+    /// The judgments of its checks.
+    pub checks: Vec<Judgment>,
 }
 
-impl Finding {
+impl Finding<'_> {
     /// Whether all values are as expected.
     pub fn is_passed(&self) -> bool {
-        self.checks.iter().all(Check::is_passed)
+        self.checks.iter().all(Judgment::is_passed)
     }
 }
 
+/// A case whose data are missing.
+pub struct Skipped<'a> {
+    /// The case.
+    pub case: &'a Case,
+    /// The reason, and the source of the data.
+    pub why: String,
+}
+
 /// All findings.
-pub struct Report {
+pub struct Report<'a> {
     /// The suite.
-    pub suite: &'static Suite,
+    pub suite: &'a Suite,
     /// The profiles, in the order of the columns.
     pub profiles: Vec<String>,
     /// The findings, by case, profile and seed.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<Finding<'a>>,
     /// Cases without data, which neither pass nor fail.
-    pub skipped: Vec<Skipped>,
+    pub skipped: Vec<Skipped<'a>>,
 }
 
 /// A check of a case, with all profiles and seeds.
 struct Row<'a> {
     /// The findings of the case.
-    findings: Vec<&'a Finding>,
+    findings: &'a [Finding<'a>],
     /// The number of the check.
     check: usize,
 }
 
 impl Row<'_> {
-    fn case(&self) -> &'static Case {
+    fn case(&self) -> &Case {
         self.findings[0].case
     }
 
-    fn check(&self) -> &Check {
+    fn check(&self) -> &Judgment {
         &self.findings[0].checks[self.check]
     }
 
@@ -66,7 +79,7 @@ impl Row<'_> {
     /// The least and the largest value of a profile over the seeds, bold if one is not as expected.
     fn values(&self, profile: &str) -> String {
         let own = self.findings.iter().filter(|one| one.profile == profile);
-        let checks: Vec<&Check> = own.map(|one| &one.checks[self.check]).collect();
+        let checks: Vec<&Judgment> = own.map(|one| &one.checks[self.check]).collect();
         let values: Option<Vec<f64>> = checks.iter().map(|check| check.value).collect();
         let range = values.map(|values| Range::of(&values));
         let ends = range.map_or([None; 2], |range| [range.minimum, range.maximum].map(Some));
@@ -92,154 +105,177 @@ fn written(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |value| rounded(value).to_string())
 }
 
-impl Report {
+impl<'a> Report<'a> {
     /// Misses of the suite's profiles that are not known misses; empty if there are none.
     pub fn failures(&self) -> Vec<String> {
-        let missed = self.findings.iter().filter(|finding| !finding.is_passed());
-        let is_known = |one: &Finding| one.case.known_miss(&one.profile).is_some();
-        let new = missed
-            .filter(|one| self.suite.profiles.contains(&one.profile.as_str()) && !is_known(one));
-        let lines = new.map(|finding| {
+        let profiles = &self.suite.profiles;
+        let is_new = |one: &&Finding| {
+            let is_own = profiles.is_empty() || profiles.contains(&one.profile);
+            !one.is_passed() && is_own && !one.case.known_misses.contains_key(&one.profile)
+        };
+        let lines = self.findings.iter().filter(is_new).map(|finding| {
             let missed = finding.checks.iter().filter(|check| !check.is_passed());
             let missed = missed.map(|check| {
-                let (value, expected) = (written(check.value), check.expected_written());
+                let (value, expected) = (written(check.value), check.expected);
                 format!("{} is {value}, expected {expected}", check.quantity)
             });
             let missed: Vec<String> = missed.collect();
-            let Finding {
-                case,
-                profile,
-                seed,
-                ..
-            } = finding;
-            let seed = seed.map_or(String::new(), |seed| format!(", seed {seed}"));
-            format!("case {}, {profile}{seed}: {}", case.id, missed.join("; "))
+            let (case, profile) = (&finding.case.name, &finding.profile);
+            let seed = finding
+                .seed
+                .map_or(String::new(), |seed| format!(", seed {seed}"));
+            format!("case {case}, {profile}{seed}: {}", missed.join("; "))
         });
         lines.collect()
     }
 
     /// Whether a profile passes a case with all seeds; `None` without a finding.
     fn is_passed(&self, case: &Case, profile: &str) -> Option<bool> {
-        let own = |one: &&Finding| one.case.id == case.id && one.profile == profile;
+        let own = |one: &&Finding| one.case.name == case.name && one.profile == profile;
         let mut own = self.findings.iter().filter(own).peekable();
         own.peek()?;
         Some(own.all(Finding::is_passed))
     }
 
+    /// The known misses of a case with this outcome: profiles and reasons, in the order of the suite's profiles.
+    fn known_misses(&self, case: &'a Case, passed: bool) -> Vec<(&'a str, &'a str)> {
+        let misses = case.known_misses.iter();
+        let misses = misses.filter(|(of, _)| self.is_passed(case, of) == Some(passed));
+        let mut misses: Vec<_> = misses
+            .map(|(of, why)| (of.as_str(), why.as_str()))
+            .collect();
+        misses.sort_by_key(|(of, _)| self.suite.profiles.iter().position(|own| own == of));
+        misses
+    }
+
     /// Known misses that pass with all seeds: they should be removed from the list.
     pub fn no_longer_missed(&self) -> Vec<String> {
-        let passed = |case: &'static Case| {
-            let misses = case.misses.iter().map(|(profile, _)| *profile);
-            let passed = misses.filter(|profile| self.is_passed(case, profile) == Some(true));
-            passed.map(move |profile| format!("case {}, {profile}: passes now", case.id))
+        let passed = |case: &'a Case| {
+            let passed = self.known_misses(case, true).into_iter();
+            passed.map(|(profile, _)| format!("case {}, {profile}: passes now", case.name))
         };
         self.cases().into_iter().flat_map(passed).collect()
     }
 
     /// The cases, in order.
-    fn cases(&self) -> Vec<&'static Case> {
-        let mut cases: Vec<&'static Case> = self.findings.iter().map(|one| one.case).collect();
-        cases.dedup_by_key(|case| case.id);
+    fn cases(&self) -> Vec<&'a Case> {
+        let mut cases: Vec<&Case> = self.findings.iter().map(|one| one.case).collect();
+        cases.dedup_by_key(|case| &case.name);
         cases
     }
 
     /// All results as Markdown: a summary, a table, and the reasons of the misses.
     pub fn markdown(&self) -> String {
-        let count = |profile: &String| {
-            let cases = self.cases();
-            let passed = cases
-                .iter()
-                .filter(|case| self.is_passed(case, profile) == Some(true));
-            let values = self.findings.iter().filter(|one| one.profile == *profile);
-            let values = values.flat_map(|one| &one.checks);
-            let compared: Vec<&Check> = values.filter(|check| check.is_compared()).collect();
-            let inside = compared.iter().filter(|check| check.is_passed()).count();
-            let values = match compared.len() {
-                0 => String::new(),
-                count => format!(" ({inside} of {count} values)"),
-            };
+        let lines = self.skipped.iter();
+        let lines = lines.map(|one| {
             format!(
-                "{profile}: {} of {} cases{values}",
-                passed.count(),
-                cases.len()
+                "- **{}**, {}: {}.\n",
+                one.case.name,
+                one.case.title(),
+                one.why
             )
+        });
+        let skips = match self.skipped.len() {
+            0 => String::new(),
+            count => format!(
+                "Skipped, for want of data: {count}.\n\n{}",
+                lines.collect::<String>()
+            ),
         };
-        let counts: Vec<String> = self.profiles.iter().map(count).collect();
-        let walls = match self
-            .rows()
+        if self.findings.is_empty() {
+            return skips;
+        }
+        let rows = self.rows();
+        let checks = self.findings.iter().flat_map(|one| &one.checks);
+        let mut walls = checks
+            .filter(|check| check.quantity == THROUGH_WALLS)
+            .peekable();
+        let walls = match walls.peek().is_some() && walls.all(Judgment::is_passed) {
+            true => " In no run did anyone pass through a wall.",
+            false => "",
+        };
+        let counts: Vec<String> = self
+            .profiles
             .iter()
-            .any(|row| row.check().quantity == THROUGH_WALLS)
-        {
-            false => " In no run did anyone pass through a wall.",
-            true => "",
+            .map(|profile| self.passed(profile))
+            .collect();
+        let counts = counts.join(", by ");
+        let table = self.table(&rows);
+        let parts = [self.reasons(), skips]
+            .into_iter()
+            .filter(|part| !part.is_empty());
+        let parts: String = parts.map(|part| format!("\n{part}")).collect();
+        format!("Passed by {counts}. Bold: not as expected.{walls}\n\n{table}{parts}")
+    }
+
+    /// How many cases and compared values of a profile are as expected.
+    fn passed(&self, profile: &str) -> String {
+        let cases = self.cases();
+        let passed = cases
+            .iter()
+            .filter(|case| self.is_passed(case, profile) == Some(true));
+        let own = self.findings.iter().filter(|one| one.profile == profile);
+        let compared = own
+            .flat_map(|one| &one.checks)
+            .filter(|check| check.expected.is_measured());
+        let compared: Vec<bool> = compared.map(Judgment::is_passed).collect();
+        let inside = compared.iter().filter(|&&inside| inside).count();
+        let values = match compared.len() {
+            0 => String::new(),
+            count => format!(" ({inside} of {count} values)"),
         };
-        let table = self.table();
-        // Consecutive cases that the same profiles miss for the same reason share a line.
+        format!(
+            "{profile}: {} of {} cases{values}",
+            passed.count(),
+            cases.len()
+        )
+    }
+
+    /// The reasons of known misses. Consecutive cases that the same profiles miss for the same reason share a line.
+    fn reasons(&self) -> String {
         let mut reasons: Vec<(Vec<&str>, Vec<&str>, &str)> = Vec::new();
         for case in self.cases() {
-            let missed = case.misses.iter();
-            let missed = missed.filter(|(of, _)| self.is_passed(case, of) == Some(false));
-            let missed: Vec<_> = missed.collect();
+            let missed = self.known_misses(case, false);
             for one_reason in missed.chunk_by(|a, b| a.1 == b.1) {
                 let profiles: Vec<&str> = one_reason.iter().map(|(profile, _)| *profile).collect();
                 let why = one_reason[0].1;
                 match reasons.last_mut() {
                     Some((cases, of, same)) if *of == profiles && *same == why => {
-                        cases.push(case.id)
+                        cases.push(&case.name)
                     }
-                    _ => reasons.push((vec![case.id], profiles, why)),
+                    _ => reasons.push((vec![&case.name], profiles, why)),
                 }
             }
         }
-        let line = |(cases, profiles, why): (Vec<&str>, Vec<&str>, &str)| {
+        let lines = reasons.iter().map(|(cases, profiles, why)| {
             format!(
                 "- **{}**, {}: {why}.\n",
                 cases.join(", "),
                 profiles.join(", ")
             )
-        };
-        let mut misses: String = reasons.into_iter().map(line).collect();
-        if !misses.is_empty() {
-            misses = format!("\nKnown misses:\n\n{misses}");
+        });
+        match reasons.is_empty() {
+            true => String::new(),
+            false => format!("Known misses:\n\n{}", lines.collect::<String>()),
         }
-        let mut skips = match self.skipped.len() {
-            0 => String::new(),
-            count => format!("Skipped, for want of data: {count}.\n\n"),
-        };
-        for Skipped { case, why } in &self.skipped {
-            skips += &format!("- **{}**, {}: {why}.\n", case.id, case.about);
-        }
-        if self.findings.is_empty() {
-            return skips;
-        }
-        if !skips.is_empty() {
-            skips.insert(0, '\n');
-        }
-        let counts = counts.join(", by ");
-        format!("Passed by {counts}. Bold: not as expected.{walls}\n\n{table}{misses}{skips}")
     }
 
     fn rows(&self) -> Vec<Row<'_>> {
-        let rows = self.cases().into_iter().flat_map(|case| {
-            let own = self.findings.iter().filter(|one| one.case.id == case.id);
-            let findings: Vec<&Finding> = own.collect();
-            let checks = findings[0].checks.len();
-            (0..checks).map(move |check| Row {
-                findings: findings.clone(),
-                check,
-            })
+        let of_cases = self.findings.chunk_by(|a, b| a.case.name == b.case.name);
+        let rows = of_cases.flat_map(|findings| {
+            let checks = 0..findings[0].checks.len();
+            checks.map(move |check| Row { findings, check })
         });
         rows.filter(Row::is_shown).collect()
     }
 
-    fn table(&self) -> String {
-        let rows = self.rows();
-        let first = |row: &Row, text: &'static str| if row.check == 0 { text } else { "" };
-        let mut table = Table::of(&rows)
-            .column("case", |row| first(row, row.case().id))
-            .column("what it shows", |row| first(row, row.case().about))
+    fn table(&self, rows: &[Row]) -> String {
+        let first = |row: &Row, text: String| if row.check == 0 { text } else { String::new() };
+        let mut table = Table::of(rows)
+            .column("case", |row| first(row, row.case().name.clone()))
+            .column("what it shows", |row| first(row, row.case().title()))
             .column("quantity", |row| row.check().quantity.clone())
-            .column("expected", |row| row.check().expected_written());
+            .column("expected", |row| row.check().expected.to_string());
         for profile in &self.profiles {
             table = table.column(profile, move |row| row.values(profile));
         }
@@ -257,11 +293,13 @@ impl Report {
             let checks = finding.checks.iter();
             checks.map(move |check| (finding, check))
         });
-        let rows: Vec<(&Finding, &Check)> = rows.collect();
-        let bound =
-            |check: &Check, k: usize| Some(check.bounds()[k]).filter(|bound| bound.is_finite());
+        let rows: Vec<(&Finding, &Judgment)> = rows.collect();
+        let bound = |check: &Judgment, k: usize| {
+            let bound = check.expected.bounds()[k];
+            bound.is_finite().then_some(bound)
+        };
         let csv = Table::of(&rows)
-            .column("case", |(finding, _)| finding.case.id)
+            .column("case", |(finding, _)| finding.case.name.as_str())
             .column("profile", |(finding, _)| finding.profile.as_str())
             .column("seed", |(finding, _)| finding.seed)
             .column("quantity", |(_, check)| check.quantity.as_str())
@@ -272,12 +310,12 @@ impl Report {
         store.write(&name("csv"), &csv.table().csv()?)?;
         let entry = |finding: &Finding| {
             json!({
-                "case": finding.case.id, "profile": finding.profile, "seed": finding.seed,
+                "case": finding.case.name, "profile": finding.profile, "seed": finding.seed,
                 "passed": finding.is_passed(), "checks": finding.checks,
             })
         };
         let skipped = self.skipped.iter();
-        let skipped = skipped.map(|one| json!({"case": one.case.id, "skipped": one.why}));
+        let skipped = skipped.map(|one| json!({"case": one.case.name, "skipped": one.why}));
         let entries: Vec<_> = self.findings.iter().map(entry).chain(skipped).collect();
         store.write(&name("json"), format!("{:#}\n", json!(entries)).as_bytes())?;
         Ok(())

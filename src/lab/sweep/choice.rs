@@ -1,39 +1,18 @@
 //! A setting, and its place in a study's file.
 
 use std::collections::{BTreeSet, HashSet};
-use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
 use super::cell::{MOST_CELLS, short};
 use super::entries::Entries;
+use super::written::Written;
 use crate::runs::case::Source;
 use crate::scenario::quote::shown;
-use crate::scenario::{Problem, SHIPPED, Setting, built_in, suggestion};
+use crate::scenario::{Problem, SHIPPED, Setting, suggestion};
 
 /// The key of the scenario, which can be varied like a setting.
 pub(super) const SCENARIO: &str = "scenario";
-
-/// The source of a study and of the files that it refers to.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::lab) struct Root<'a> {
-    /// The study's file, relative to `scenarios/` if it is built in.
-    pub(in crate::lab) path: &'a Path,
-    /// Whether it is built into the program or on disk.
-    pub(in crate::lab) built_in: bool,
-}
-
-impl Root<'_> {
-    /// The scenario in this file, if it exists.
-    fn scenario(&self, name: &str) -> Result<Source, PathBuf> {
-        let path = self.path.parent().unwrap_or(Path::new("")).join(name);
-        match self.built_in {
-            true if built_in(&path).is_some() => Ok(Source::BuiltIn(path)),
-            false if path.is_file() => Ok(Source::File(path)),
-            _ => Err(path),
-        }
-    }
-}
 
 /// A setting, and its place in the file.
 #[derive(Debug, Clone)]
@@ -78,7 +57,7 @@ pub(super) fn said(choices: &[Choice]) -> BTreeSet<(Option<&[String]>, String)> 
 pub(super) fn choices(
     entries: &Entries,
     place: &str,
-    root: Option<Root>,
+    root: Option<&Written>,
 ) -> Result<Vec<Choice>, Problem> {
     let mut choices: Vec<Choice> = Vec::new();
     for (key, value) in &entries.0 {
@@ -93,7 +72,7 @@ pub(super) fn choices(
 }
 
 /// A key of the grid with its values.
-pub(super) fn axis(key: &str, values: &Value, root: Root) -> Result<Vec<Choice>, Problem> {
+pub(super) fn axis(key: &str, values: &Value, root: &Written) -> Result<Vec<Choice>, Problem> {
     let place = format!("grid.{key}");
     let Some(values) = values.as_array() else {
         return Err(Problem::new(place, "must be a list of values"));
@@ -121,7 +100,7 @@ fn choice(
     key: &str,
     value: &Value,
     [inside, place]: [&str; 2],
-    root: Option<Root>,
+    root: Option<&Written>,
 ) -> Result<Choice, Problem> {
     let meaning = match (root, value) {
         (Some(root), Value::String(name)) if key == SCENARIO => {
@@ -151,7 +130,7 @@ fn choice(
 }
 
 /// A shipped scenario by its name, or a file.
-pub(in crate::lab) fn source(name: &str, place: &str, root: Root) -> Result<Source, Problem> {
+pub(in crate::lab) fn source(name: &str, place: &str, root: &Written) -> Result<Source, Problem> {
     if let Some(shipped) = Source::shipped(name) {
         return Ok(shipped);
     }

@@ -79,12 +79,6 @@ impl<'a> Gathered<'a> {
         }
     }
 
-    /// Number of cells that are finished, failed and missing.
-    pub fn counts(&self) -> [usize; 3] {
-        let names = || self.states.iter().map(State::name);
-        ["finished", "failed", "missing"].map(|name| names().filter(|&own| own == name).count())
-    }
-
     /// Writes `NAME.csv`, `NAME-summary.csv` and `NAME-results.json` into the store's folder, and the picture as
     /// `NAME.svg` and `NAME.png`, if there is one.
     ///

@@ -15,6 +15,7 @@
 //! | `list` | a list of objects of settings, one for each cell; each may have a `label` for tables |
 //! | `grid` | an object of settings, each with a list of values; all combinations are run |
 //! | `seeds` | the number of seeds (1, 2, …), or a list of seeds |
+//! | `cases`, `reasons`, `data` | what a [suite](crate::lab::suite) expects of the runs |
 //! | `name` | the name of the results; by default the file's name |
 //! | `description` | a description, in one line |
 //!
@@ -32,16 +33,19 @@ mod seeds;
 mod shard;
 mod study;
 mod tables;
+mod written;
 
 pub use cell::Cell;
-pub(in crate::lab) use choice::{Root, source};
+pub(in crate::lab) use choice::source;
 pub(in crate::lab) use entries::Entries;
 pub use gathered::{Combination, Gathered, State};
 pub use pictures::{Drawing, DrawingError};
+pub(in crate::lab) use plan::{Changes, DataFile, PROFILE, check_keys};
 pub(in crate::lab) use seeds::Seeds;
 pub use shard::Shard;
+pub(in crate::lab) use study::{FOLDER, check_name};
 pub use study::{Study, StudyError};
-pub(in crate::lab) use study::{check_name, parse};
+pub(in crate::lab) use written::Written;
 
 use crate::runs::error::StoreError;
 use crate::runs::job::{self, Listener, Tally};

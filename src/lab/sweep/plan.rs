@@ -4,18 +4,23 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::cell::{Cell, LABEL, MOST_CELLS};
-use super::choice::{Choice, Meaning, Root, SCENARIO, axis, choices, said, source};
+use super::choice::{Choice, Meaning, SCENARIO, axis, choices, said, source};
 use super::entries::Entries;
 use super::seeds::Seeds;
+use super::written::Written;
 use crate::lab::gallery::distinct;
 use crate::runs::case::{Case, Source};
 use crate::runs::error::RunError;
 use crate::runs::memory::Memory;
 use crate::scenario::quote::shown;
-use crate::scenario::{Problem, Setting};
+use crate::scenario::{Problem, ScenarioError, Setting};
+
+/// The key of the grid that suites vary.
+pub(in crate::lab) const PROFILE: &str = "profile";
 
 /// The whole file.
 #[derive(Debug, Default, Deserialize)]
@@ -30,36 +35,75 @@ pub(super) struct File {
     pub(super) list: Option<Vec<Entries>>,
     pub(super) grid: Entries,
     pub(super) seeds: Option<Seeds>,
+    data: Vec<DataFile>,
+    /// What suites expect of the runs.
+    #[serde(rename = "reasons")]
+    _reasons: IgnoredAny,
+    #[serde(rename = "cases")]
+    _cases: IgnoredAny,
+}
+
+/// A file of trajectories that is not part of the program, from which the scenarios of a run begin.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DataFile {
+    /// The label of the run.
+    pub run: String,
+    /// Its name in the folder with the data.
+    pub file: String,
+    /// Where it can be had.
+    pub source: String,
+}
+
+/// What a command changes in a study's file.
+#[derive(Default)]
+pub struct Changes<'a> {
+    /// Profiles in place of those of the grid; none: those of the grid.
+    pub profiles: &'a [String],
+    /// The number of seeds in place of the file's.
+    pub seeds: Option<u64>,
+    /// The paths of data files by the labels of their runs.
+    pub data: BTreeMap<String, PathBuf>,
+}
+
+/// Checks the names and types of a study's keys.
+///
+/// # Errors
+/// The first problem, with its place in the file.
+pub(in crate::lab) fn check_keys(of: &Written) -> Result<(), ScenarioError> {
+    of.parsed::<File>(File::NEEDS).map(|_| ())
 }
 
 impl File {
-    /// Replaces the number of seeds, if one is given.
-    pub(super) fn with_seeds(&mut self, seeds: Option<u64>) {
-        self.seeds = seeds.map(Seeds::Count).or(self.seeds.take());
-    }
+    /// What a study needs, in words.
+    pub(super) const NEEDS: &str = "a `scenario`";
 
-    /// Replaces the profiles of the grid, if there are any, and the number of seeds.
-    pub(super) fn with_grid(&mut self, profiles: &[String], seeds: Option<u64>) {
-        self.with_seeds(seeds);
-        let grid = self.grid.0.iter_mut();
-        let profile = grid.filter(|(key, _)| !profiles.is_empty() && key == "profile");
-        profile.for_each(|(_, values)| *values = profiles.into());
-    }
-
-    /// Keeps the entries of the list whose labels have a file in `data`. Their scenarios begin from it.
-    pub(super) fn with_data(&mut self, data: &BTreeMap<&str, PathBuf>) {
-        let Some(list) = &mut self.list else {
-            return;
-        };
-        list.retain_mut(|Entries(entries)| {
-            let label = entries.iter().find(|(key, _)| key == LABEL);
-            let label = label.and_then(|(_, label)| label.as_str());
-            let Some(path) = label.and_then(|label| data.get(label)) else {
-                return false;
-            };
-            let path = Value::from(path.to_string_lossy());
-            entries.push(("from.trajectory".to_owned(), path));
-            true
+    /// Applies the changes. Runs whose data are missing are left out.
+    pub(super) fn change(&mut self, changes: &Changes) {
+        self.seeds = changes.seeds.map(Seeds::Count).or(self.seeds.take());
+        if !changes.profiles.is_empty() {
+            let grid = &mut self.grid.0;
+            match grid.iter_mut().find(|(key, _)| key == PROFILE) {
+                Some((_, profiles)) => *profiles = changes.profiles.into(),
+                None => grid.push((PROFILE.to_owned(), changes.profiles.into())),
+            }
+        }
+        let runs = &self.data;
+        let list = self.list.iter_mut();
+        list.for_each(|list| {
+            list.retain_mut(|Entries(entries)| {
+                let label = entries.iter().find(|(key, _)| key == LABEL);
+                let label = label.and_then(|(_, label)| label.as_str());
+                let Some(run) = runs.iter().find(|data| Some(data.run.as_str()) == label) else {
+                    return true;
+                };
+                let path = changes.data.get(&run.run);
+                let path =
+                    path.map(|path| ("from.trajectory".to_owned(), path.to_string_lossy().into()));
+                let is_there = path.is_some();
+                entries.extend(path);
+                is_there
+            })
         });
     }
 }
@@ -85,7 +129,7 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    pub(super) fn new(file: &File, root: Root) -> Result<Self, Problem> {
+    pub(super) fn new(file: &File, root: &Written) -> Result<Self, Problem> {
         let fixed = choices(&file.settings, "settings", None)?;
         let single = [Entries::default()];
         let list = file.list.as_deref().unwrap_or(&single);

@@ -1,23 +1,20 @@
 //! Turns a study's file into validated cells.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::collections::BTreeSet;
+use std::path::Path;
 
-use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::cell::{Cell, LABEL};
-use super::choice::Root;
-use super::plan::{File, Plan};
+use super::plan::{Changes, File, Plan};
+use super::written::Written;
 use crate::lab::error::LabError;
+use crate::lab::jobs::each;
 use crate::runs::error::{RunError, StoreError};
 use crate::runs::job::Job;
 use crate::runs::memory::Memory;
-use crate::runs::parallel::side_by_side;
-use crate::scenario::input;
 use crate::scenario::quote::shown;
-use crate::scenario::{Problem, ScenarioError, built_in, in_plain_words, read_document};
+use crate::scenario::{Problem, ScenarioError};
 
 /// The maximum length of a name, bytes: results add to it, and file names are limited.
 const LONGEST_NAME: usize = 200;
@@ -48,6 +45,9 @@ impl From<StudyError> for LabError {
         Self::Data(error.to_string())
     }
 }
+
+/// The folder of the built-in studies.
+pub(in crate::lab) const FOLDER: &str = "studies";
 
 /// A scenario over settings and seeds.
 #[derive(Debug, Clone)]
@@ -115,12 +115,7 @@ impl Study {
     /// # Errors
     /// The first problem, with its place in the file or the number of the cell; or a single cell needs more memory.
     pub fn read(path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
-        let text = input::text(path).map_err(|error| ScenarioError::Unreadable {
-            file: path.display().to_string(),
-            reason: error.to_string(),
-        })?;
-        let built_in = false;
-        Self::parse_within(&text, Root { path, built_in }, |_| (), memory)
+        Self::changed(&Written::read(path)?, &Changes::default(), memory)
     }
 
     /// Reads a study from a file, or the built-in one of this name if there is no such file.
@@ -128,12 +123,7 @@ impl Study {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn open(path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
-        match path.to_str().filter(|_| !path.exists()) {
-            Some(name) if built_in(&built_in_path(name)).is_some() => {
-                Self::built_in(name, None, memory)
-            }
-            _ => Self::read(path, memory),
-        }
+        Self::changed(&Written::open(path, FOLDER)?, &Changes::default(), memory)
     }
 
     /// A study that is built into the program: a file under `scenarios/studies/`, without its extension. `seeds`
@@ -146,50 +136,11 @@ impl Study {
         seeds: Option<u64>,
         memory: Option<u64>,
     ) -> Result<Self, StudyError> {
-        Self::changed(name, |file| file.with_seeds(seeds), memory)
-    }
-
-    /// The same with other profiles than those of its grid, if any are given.
-    ///
-    /// # Errors
-    /// As [`built_in`](Self::built_in).
-    pub fn built_in_for(
-        name: &str,
-        profiles: &[String],
-        seeds: Option<u64>,
-    ) -> Result<Self, StudyError> {
-        Self::changed(name, |file| file.with_grid(profiles, seeds), None)
-    }
-
-    /// The same with those entries of its list whose labels have a file in `data`: their scenarios begin from it.
-    ///
-    /// # Errors
-    /// As [`built_in`](Self::built_in).
-    pub fn built_in_with(
-        name: &str,
-        data: &BTreeMap<&str, PathBuf>,
-        (profiles, seeds): (&[String], Option<u64>),
-    ) -> Result<Self, StudyError> {
-        let change = |file: &mut File| {
-            file.with_grid(profiles, seeds);
-            file.with_data(data);
+        let changes = Changes {
+            seeds,
+            ..Changes::default()
         };
-        Self::changed(name, change, None)
-    }
-
-    /// A built-in study, changed.
-    fn changed(
-        name: &str,
-        change: impl FnOnce(&mut File),
-        memory: Option<u64>,
-    ) -> Result<Self, StudyError> {
-        let path = built_in_path(name);
-        let text = built_in(&path).ok_or_else(|| ScenarioError::Unreadable {
-            file: path.display().to_string(),
-            reason: "no such study is built into the program".to_owned(),
-        })?;
-        let (path, built_in) = (path.as_path(), true);
-        Self::parse_within(text, Root { path, built_in }, change, memory)
+        Self::changed(&Written::built_in(FOLDER, name)?, &changes, memory)
     }
 
     /// Reads a study from JSON. `path` is its name in messages; files that it refers to are relative to the folder of
@@ -198,44 +149,31 @@ impl Study {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(text: &str, path: &Path) -> Result<Self, StudyError> {
-        let built_in = false;
-        Self::parse_within(text, Root { path, built_in }, |_| (), None)
+        Self::changed(&Written::of(text, path), &Changes::default(), None)
     }
 
-    fn parse_within(
-        text: &str,
-        root: Root,
-        change: impl FnOnce(&mut File),
+    /// A study with these changes.
+    pub(in crate::lab) fn changed(
+        from: &Written,
+        changes: &Changes,
         memory: Option<u64>,
     ) -> Result<Self, StudyError> {
-        let file = root.path.display().to_string();
-        let stem = root.path.file_stem().unwrap_or_default().to_string_lossy();
-        let invalid = |problem| ScenarioError::Invalid {
-            file: file.clone(),
-            problem,
-        };
-        let document = read_document(text, &file)?;
-        let mut written: File = parse(text, "a `scenario`").map_err(invalid)?;
-        change(&mut written);
-        let plan = Plan::new(&written, root).map_err(invalid)?;
-        let name = written.name.unwrap_or_else(|| stem.into_owned());
+        let (document, mut written) = from.parsed::<File>(File::NEEDS)?;
+        written.change(changes);
+        let invalid = |problem| from.invalid(problem);
+        let plan = Plan::new(&written, from).map_err(invalid)?;
+        let name = written.name.unwrap_or_else(|| from.stem());
         check_name(&name).map_err(invalid)?;
         let shared = Memory::new(memory);
-        let cells: Vec<_> = (0..plan.count).map(|_| OnceLock::new()).collect();
         // Not on rayon's threads: these could start another cell while they hold memory for the first.
-        side_by_side(plan.count, |index| {
-            cells[index].set(plan.cell(index, &shared)).ok();
-            Ok::<(), StoreError>(())
-        })?;
-        let cell = |(index, cell): (usize, OnceLock<Result<Cell, RunError>>)| {
-            let failed = |error| StudyError::Cell {
-                file: file.clone(),
+        let cells = each(plan.count, |index| plan.cell(index, &shared))?.into_iter();
+        let cells = cells.enumerate().map(|(index, cell)| {
+            cell.map_err(|error| StudyError::Cell {
+                file: from.file(),
                 cell: index + 1,
                 error,
-            };
-            cell.into_inner().map(|cell| cell.map_err(failed))
-        };
-        let cells = cells.into_iter().enumerate().filter_map(cell);
+            })
+        });
         Ok(Self {
             name,
             document,
@@ -246,10 +184,6 @@ impl Study {
             axes: plan.names,
         })
     }
-}
-
-fn built_in_path(name: &str) -> PathBuf {
-    Path::new("studies").join(format!("{name}.json"))
 }
 
 /// Whether the name is suitable for result files on every system.
@@ -271,21 +205,4 @@ pub(in crate::lab) fn check_name(name: &str) -> Result<(), Problem> {
         shown(name)
     );
     Err(Problem::new("name", reason))
-}
-
-/// Checks names and types. `needs` names the required keys, for the message about a file that is not an object.
-pub(in crate::lab) fn parse<T: DeserializeOwned>(text: &str, needs: &str) -> Result<T, Problem> {
-    if !text.trim_start().starts_with('{') {
-        let reason = format!("must be an object, {{…}}, with {needs}");
-        return Err(Problem::new("", reason));
-    }
-    let mut deserializer = serde_json::Deserializer::from_str(text);
-    serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
-        let path = error.path().to_string();
-        let said = error.inner();
-        let place = format!(" at line {} column {}", said.line(), said.column());
-        let said = said.to_string();
-        let reason = in_plain_words(said.strip_suffix(&place).unwrap_or(&said));
-        Problem::new(if path == "." { String::new() } else { path }, reason)
-    })
 }

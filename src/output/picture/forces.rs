@@ -9,12 +9,10 @@ use crate::output::plot::{ColorBar, Mark, Style};
 /// The parts of walls with a force on them, colored by the force on 1 m.
 pub fn marks(simulation: &Simulation, body_mass: f64) -> Vec<Mark> {
     let outlines = Outlines::new(&simulation.scene().walls);
-    let forces = outlines.per_meter(&outlines.forces(simulation, body_mass));
-    let parts = outlines.cells().iter().zip(forces);
-    let pressed = parts.filter(|&(_, force)| force > 0.0);
-    let marks = pressed.map(|(cell, force)| {
+    let pressed = outlines.pressed(simulation, body_mass);
+    let marks = pressed.map(|(ends, force)| {
         let style = Style::full(WALL_FORCE.color(force as f32), 3.0, "");
-        Mark::line(cell.ends.map(xy), style)
+        Mark::line(ends.map(xy), style)
     });
     marks.collect()
 }

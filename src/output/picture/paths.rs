@@ -131,7 +131,7 @@ impl Paths {
         let on_floor = on_floor.filter(|&p| self.ways.floor.locate(p).is_some());
         let arrow = |p: Vector| {
             let way = self.ways.open_way(p, self.to)?;
-            let next = self.ways.place(way.next);
+            let next = way.next.place(&self.ways.floor);
             let reach = frame.meters(11.0);
             let along = direction(next - p) * reach.min((next - p).norm());
             let ends = [p, p + along];

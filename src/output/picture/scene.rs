@@ -4,9 +4,9 @@ use super::{Frame, Picture, dark, xy};
 use crate::engine::agents::Agents;
 use crate::engine::journeys::Kind;
 use crate::engine::math::Vector;
-use crate::engine::scene::Scene;
+use crate::engine::scene::{Region, Scene};
 use crate::output::colors::{Rgb, light};
-use crate::output::labels::{AROUND, Labels, around, of_place};
+use crate::output::labels::{self, AROUND, Labels, around, of_place};
 use crate::output::plot::{BLACK, Mark, Style};
 use crate::output::scenery::{self, ZONE};
 
@@ -19,8 +19,6 @@ const SOURCE: Rgb = [0, 150, 180];
 const CLOSED: Rgb = [190, 40, 40];
 /// Far enough to cover the panel, meters.
 const FAR: f64 = 1e7;
-/// Up to this many goals get labels.
-const NAMED_GOALS: usize = 8;
 /// Half of a goal's cross, points.
 const CROSS: f64 = 3.0;
 
@@ -86,7 +84,7 @@ pub fn zones(scene: &Scene, frame: &Frame, inside: bool, labels: &mut Labels) ->
     let mut marks = Vec::new();
     for zone in &scene.journeys.zones {
         let style = |width| Style::full(light(ZONE, 0.7), width, "");
-        let outline = scenery::closed(&zone.area).into_iter().map(xy);
+        let outline = scenery::closed(zone.area.points()).into_iter().map(xy);
         marks.push(Mark::line(outline, style(0.8)));
         let hatching = scenery::hatching(&zone.area, frame.meters(7.0));
         let lines = hatching.into_iter().map(|line| line.map(xy));
@@ -101,14 +99,9 @@ pub fn zones(scene: &Scene, frame: &Frame, inside: bool, labels: &mut Labels) ->
 pub fn sources(scene: &Scene, labels: &mut Labels) -> Vec<Mark> {
     let mut marks = Vec::new();
     for source in &scene.sources {
-        let (low, high) = (source.grid.min, source.grid.max);
-        let corners = [
-            low,
-            Vector::new(high.x, low.y),
-            high,
-            Vector::new(low.x, high.y),
-        ];
-        let outline = corners.iter().chain(&corners[..1]).map(|&p| xy(p));
+        let (min, max) = (source.grid.min, source.grid.max);
+        let corners = Region { min, max }.corners();
+        let outline = scenery::closed(&corners).into_iter().map(xy);
         marks.push(Mark::line(outline, Style::broken(SOURCE, 1.2, "")));
         let name = scenery::named("source", &source.name);
         labels.add(&name, SOURCE, &around(&corners, false));
@@ -151,10 +144,9 @@ pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark
         let closed = if is_closed { " (closed)" } else { "" };
         let text = scenery::named(place.kind.name(), &place.name) + closed;
         let color = if is_closed { CLOSED } else { color };
-        let kind = place.kind.name();
-        let similar = all.iter().filter(|other| other.kind.name() == kind);
+        let similar = scenery::alike(picture.scene, place);
         let spots = of_place(&picture.scene.walls, place, &lines, &screen);
-        labels.add_of(similar.count(), &text, (color, &spots));
+        labels.add_of(similar, &text, (color, &spots));
     }
     marks
 }
@@ -168,23 +160,21 @@ fn initial(scene: &Scene) -> Agents {
 }
 
 /// Goals of agents without journeys, as crosses.
-pub fn goals(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark> {
+pub fn goals(picture: &Picture, frame: &Frame, names: &mut Labels) -> Vec<Mark> {
     let scene = picture.scene;
     let goals = match picture.simulation {
         Some(simulation) => scenery::goals(scene, simulation.frame().agents),
         None => scenery::goals(scene, &initial(scene)),
     };
-    let names = scenery::goal_labels(scene, &goals);
+    for (name, spots) in labels::of_goals(scene, &goals) {
+        names.add(&name, GOAL, &spots);
+    }
     let half = frame.meters(CROSS);
     let mut marks = Vec::new();
-    for ((goal, _), name) in goals.iter().zip(names) {
+    for (goal, _) in &goals {
         for across in [Vector::new(half, half), Vector::new(half, -half)] {
             let ends = [goal - across, goal + across].map(xy);
             marks.push(Mark::line(ends, Style::full(GOAL, 1.6, "")));
-        }
-        if goals.len() <= NAMED_GOALS && !name.is_empty() {
-            let sides = AROUND[..8].iter().map(|&side| (*goal, side));
-            labels.add(&name, GOAL, &sides.collect::<Vec<_>>());
         }
     }
     marks

@@ -157,14 +157,14 @@ impl Animation {
 /// Waits for ffmpeg and returns its error, if there is one.
 fn ended(child: &mut Child) -> Option<std::io::Error> {
     drop(child.stdin.take());
-    let mut said = String::new();
+    let mut message = String::new();
     if let Some(mut errors) = child.stderr.take() {
-        std::io::Read::read_to_string(&mut errors, &mut said).ok();
+        std::io::Read::read_to_string(&mut errors, &mut message).ok();
     }
     match child.wait() {
         Ok(status) if status.success() => None,
         Ok(status) => {
-            let text = format!("ffmpeg ended with {status}: {}", said.trim());
+            let text = format!("ffmpeg ended with {status}: {}", message.trim());
             Some(std::io::Error::other(text))
         }
         Err(error) => Some(error),
@@ -257,8 +257,8 @@ fn changed(image: &RgbImage, before: Option<&RgbImage>, delay: u16) -> gif::Fram
     frame
 }
 
-/// The most frequent colors, as many as a palette has, and grays for the edges of letters. Agents and marks keep their
-/// own colors: only the many colors of smooth edges are changed.
+/// The most frequent colors, as many as a palette has, and grays for the edges of letters. Marks keep their own colors:
+/// only the many colors of smooth edges are changed.
 fn most_frequent(colors: impl Iterator<Item = Rgb>) -> Vec<Rgb> {
     let mut counts: HashMap<Rgb, u32> = HashMap::new();
     for color in colors {

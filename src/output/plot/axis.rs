@@ -1,9 +1,4 @@
-//! Axes, which are also the coordinates of a chart.
-
-use std::ops::Range;
-
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-use plotters::coord::types::RangedCoordf64;
+//! Axes.
 
 use super::font::width_of;
 use super::layout::NUMBER;
@@ -109,33 +104,6 @@ impl Axis {
             axis.ticks = values.into_iter().map(|v| (v, round::text(v))).collect();
         }
         axis
-    }
-}
-
-/// The coordinates of a chart are positions, not values: lines and areas are clipped where both scales are linear.
-impl Ranged for Axis {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, place: &f64, limit: (i32, i32)) -> i32 {
-        // Places far outside would overflow.
-        RangedCoordf64::from(self.range()).map(&place.clamp(-9.0, 9.0), limit)
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
-        self.ticks.iter().map(|tick| self.place(tick.0)).collect()
-    }
-
-    fn range(&self) -> Range<f64> {
-        0.0..1.0
-    }
-}
-
-impl ValueFormatter<f64> for Axis {
-    fn format_ext(&self, place: &f64) -> String {
-        let mut ticks = self.ticks.iter();
-        let tick = ticks.find(|tick| self.place(tick.0) == *place);
-        tick.map_or(String::new(), |tick| tick.1.clone())
     }
 }
 

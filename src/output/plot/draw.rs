@@ -134,8 +134,7 @@ impl<DB: DrawingBackend> Page<'_, DB> {
     fn marks(&self, panel: &Panel, (corner, size): Rect) -> Drawn {
         let area = self.root.clone();
         let area = area.shrink(self.ink.at(corner), self.ink.at(size));
-        let (x, y) = (panel.x.clone(), panel.y.clone());
-        let mut chart = ChartBuilder::on(&area).build_cartesian_2d(x, y)?;
+        let mut chart = marks::chart_on(&area)?;
         let mut marks = panel.marks.iter();
         marks.try_for_each(|mark| marks::draw(mark, panel, &mut chart, self.ink))
     }
@@ -144,12 +143,8 @@ impl<DB: DrawingBackend> Page<'_, DB> {
         let fitted = axis.fitted(width, true);
         let turned = fitted.is_crowded(width);
         let style = match turned {
-            true => self.ink.text(NUMBER, BLACK, [-1, 0]),
+            true => (self.ink.text(NUMBER, BLACK, [-1, 0])).transform(FontTransform::Rotate270),
             false => self.ink.text(NUMBER, BLACK, [0, -1]),
-        };
-        let style = match turned {
-            true => style.transform(FontTransform::Rotate270),
-            false => style,
         };
         for (value, text) in &fitted.ticks {
             let x = left + axis.place(*value) * width;

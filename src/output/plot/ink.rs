@@ -11,7 +11,7 @@ use crate::output::colors::Rgb;
 pub struct Ink {
     /// Units per point.
     pub scale: f64,
-    /// Pixels of crowds are drawn in groups of this number of identical rows.
+    /// Pixels of images are drawn in groups of this number of identical rows.
     pub alike: u32,
 }
 

@@ -3,12 +3,14 @@
 use std::vec::IntoIter;
 
 use image::RgbImage;
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
 use super::ink::{Ink, fill};
-use super::output::Drawn;
-use super::{Axis, Cells, Disc, LABEL_SIZE, Label, Mark, NO_DATA, Panel, Style};
+use super::output::{Drawn, PlotError};
+use super::{Cells, Disc, LABEL_SIZE, Label, Mark, NO_DATA, Panel, Style};
 use crate::output::colors::Rgb;
 
 /// More discs or cells than this are drawn as pixels: as separate shapes, they would make an SVG too large for
@@ -25,8 +27,16 @@ const LINE_POINTS: usize = 20;
 /// Right and up, from 0 to 1 inside of the plotting area.
 type Place = (f64, f64);
 
-/// The chart of a panel.
-type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<Axis, Axis>>;
+/// The chart of a panel. Its coordinates are positions, not values: lines and areas are clipped where both scales are
+/// linear.
+type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// The chart on an area.
+pub fn chart_on<'a, DB: DrawingBackend>(
+    area: &DrawingArea<DB, Shift>,
+) -> Result<Chart<'a, DB>, PlotError> {
+    Ok(ChartBuilder::on(area).build_cartesian_2d(0.0..1.0, 0.0..1.0)?)
+}
 
 /// A dot, filled or hollow.
 pub fn dot<C>(at: C, style: &Style, ink: Ink) -> Circle<C, i32> {
@@ -83,9 +93,7 @@ pub fn draw<DB: DrawingBackend>(
             Mark::Overlay(cells) => color_cells(cells, panel, &mut image, None),
             mark => {
                 let area = BitMapBackend::with_buffer(&mut image, size).into_drawing_area();
-                let (x, y) = (panel.x.clone(), panel.y.clone());
-                let mut chart = ChartBuilder::on(&area).build_cartesian_2d(x, y)?;
-                draw_shapes(mark, panel, &mut chart, ink)?;
+                draw_shapes(mark, panel, &mut chart_on(&area)?, ink)?;
             }
         }
     }
@@ -197,6 +205,7 @@ fn draw_shapes<DB: DrawingBackend>(
         Mark::Area(corners, color) => {
             let rim = corners.iter().chain(corners.first());
             let rim = with_crossings(rim.map(|&corner| panel.place(corner)).collect());
+            let rim: Vec<Place> = rim.into_iter().map(bounded).collect();
             chart.draw_series([Polygon::new(rim, fill(*color))])?;
         }
         Mark::Line(points, style) => {
@@ -229,7 +238,7 @@ fn draw_shapes<DB: DrawingBackend>(
             let counts = [cells.columns, cells.values.len() / cells.columns.max(1)];
             let corner = |index: [usize; 2]| {
                 let part = |k: usize| index[k] as f64 / counts[k] as f64;
-                panel.place([0, 1].map(|k| low[k] + part(k) * (high[k] - low[k])))
+                bounded(panel.place([0, 1].map(|k| low[k] + part(k) * (high[k] - low[k]))))
             };
             let values = cells.values.iter().enumerate();
             chart.draw_series(values.filter_map(|(k, value)| {
@@ -247,7 +256,8 @@ fn draw_shapes<DB: DrawingBackend>(
         }
         Mark::Text(at, text, color) => {
             let style = ink.text(LABEL_SIZE, *color, [0, 0]);
-            chart.draw_series([Text::new(text.clone(), panel.place(*at), style)])?;
+            let at = bounded(panel.place(*at));
+            chart.draw_series([Text::new(text.clone(), at, style)])?;
         }
     }
     Ok(())
@@ -281,9 +291,14 @@ fn draw_label<DB: DrawingBackend>(
             x + right * rim / f64::from(width),
             y + up * rim / f64::from(height),
         );
-        chart.draw_series([Text::new(label.text.clone(), at, style)])?;
+        chart.draw_series([Text::new(label.text.clone(), bounded(at), style)])?;
     }
     Ok(())
+}
+
+/// A place that does not overflow a backend's units.
+fn bounded((x, y): Place) -> Place {
+    (x.clamp(-9.0, 9.0), y.clamp(-9.0, 9.0))
 }
 
 fn is_inside(&(x, y): &Place) -> bool {

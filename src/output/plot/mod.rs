@@ -28,7 +28,7 @@ use crate::output::colors::{ColorMap, Rgb};
 
 /// Black, for text and axes.
 pub const BLACK: Rgb = [0, 0, 0];
-/// Gray, for obstacles and secondary lines.
+/// Gray, for secondary lines.
 pub const GRAY: Rgb = [140, 140, 140];
 /// Line colors that color-blind readers can distinguish (Okabe and Ito 2008).
 pub const LINES: [Rgb; 7] = [
@@ -257,9 +257,9 @@ pub const NO_DATA: Rgb = [214, 214, 218];
 /// A mark in a panel, in axis units.
 #[derive(Debug, Clone)]
 pub enum Mark {
-    /// Agents.
+    /// Discs.
     Discs(Vec<Disc>),
-    /// A filled polygon, for example an obstacle.
+    /// A filled polygon.
     Area(Vec<[f64; 2]>, Rgb),
     /// A line through points.
     Line(Vec<[f64; 2]>, Style),

@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 /// An error of rerun or the system.
 pub type Cause = Box<dyn std::error::Error + Send + Sync>;
 
+/// The error of a thread that has panicked.
+pub const GONE: &str = "the thread that writes has failed";
+
 /// A recording could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {

@@ -2,14 +2,18 @@
 
 use rerun::RecordingStream;
 
+use super::debug::DebugAgents;
+use super::draw::xy;
 use super::error::RecordingError;
+use super::frame::Snapshot;
 use super::layout::{Content, Kind};
-use super::names::Names;
-use super::output::{Destination, Output};
-use super::session::Session;
-use super::snapshot::Snapshot;
-use super::writer::Debug;
-use super::{DebugAgents, Marked, RecordingOptions, geometry, marked, text};
+use super::options::RecordingOptions;
+use super::scene::markers::Marked;
+use super::scene::names::Names;
+use super::scene::{self, obstacles};
+use super::session::{Debug, Session};
+use super::stream::{Destination, Output};
+use super::text;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 
@@ -50,13 +54,13 @@ impl MeasuredRecorder {
         };
         let output = Output::open(&to.into(), &options)?;
         let log_own = |stream: &RecordingStream| {
-            geometry::log_still(stream, walls.obstacles())?;
+            scene::log_walls(stream, walls.obstacles())?;
             let mut names = Names::of_walls(&options.view, walls);
-            marked::log(stream, &marked, &mut names)?;
+            marked.log(stream, &mut names)?;
             names.log(stream)?;
             Ok((text::of_measurement(stream, &options)?, Debug::default()))
         };
-        let content = Content::new(Kind::Measurement, geometry::has_outside(walls.obstacles()));
+        let content = Content::new(Kind::Measurement, obstacles::has_outside(walls.obstacles()));
         let session = Session::begin(output, options.clone(), content, log_own)?;
         Ok(Self { session, radius })
     }
@@ -79,8 +83,8 @@ impl MeasuredRecorder {
         for person in people {
             let velocity = person.velocity.unwrap_or(Vector::repeat(f64::NAN));
             snapshot.ids.push(person.id);
-            snapshot.positions.push(geometry::xy(person.position));
-            snapshot.velocities.push(geometry::xy(velocity));
+            snapshot.positions.push(xy(person.position));
+            snapshot.velocities.push(xy(velocity));
             snapshot.radii.push(self.radius as f32);
             snapshot.densities.push(person.density as f32);
         }

@@ -22,107 +22,49 @@
 //! | `info/{results,report}` | the results of the run, as text and as JSON, once it has ended |
 //! | `info/agents/ID` | the numbers of an agent, in the recording of a single moment |
 //! | `log` | events: entries, exits, pushes, arrivals, the end |
+//!
+//! `scene` has the static data, `frame` the data of each frame, and `debug` the data of the debug agents. `layout`
+//! arranges the views, and `stream` sends everything to a file or a viewer.
 
-mod arrows;
-mod bars;
-mod blueprint;
-mod crowd;
+mod arrangement;
 mod debug;
+mod draw;
 mod error;
-mod events;
-mod file;
-mod focus;
-mod follow;
-mod geometry;
-mod layers;
+mod frame;
 mod layout;
-mod marked;
-mod markers;
 mod measured;
-mod moment;
-mod names;
-mod output;
-mod places;
+mod options;
 mod read;
-mod relay;
+mod scene;
 mod session;
-mod snapshot;
-mod stats;
+mod stream;
 mod text;
-mod viewer;
-mod views;
-mod wall_forces;
-mod writer;
 
-pub use arrows::arrow_length;
 pub use debug::DebugAgents;
+pub use debug::arrows::arrow_length;
 pub use error::RecordingError;
-pub use marked::Marked;
 pub use measured::{MeasuredPerson, MeasuredRecorder};
-pub use output::{Destination, check_enabled};
+pub use options::RecordingOptions;
 pub use read::{Recorded, RecordedCrowd};
-pub use viewer::{Address, AddressError, Viewer};
+pub use scene::markers::Marked;
+pub use stream::viewer::{Address, AddressError, Viewer};
+pub use stream::{Destination, check_enabled};
 
-use rerun::{RecordingStream, TextLogLevel};
+use rerun::RecordingStream;
 
 use crate::analysis::wall_forces::Outlines;
 use crate::engine::clock::Clock;
-use crate::engine::math::Vector;
-use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
 use crate::output::scenery;
-use crate::scenario::floor_plan::Label;
-use events::{Events, Line};
-use focus::Focus;
-use follow::{Follow, Moment};
+use debug::focus::Focus;
+use debug::follow::{Follow, Moment};
+use debug::{arrows, layers, moment};
+use frame::events::{Events, Line};
+use frame::{Snapshot, stats, wall_forces};
 use layout::{Content, Kind};
-use names::Names;
-use output::Output;
-use session::Session;
-use snapshot::Snapshot;
-use writer::Debug;
-
-const FRAME: &str = "frame";
-const SIM_TIME: &str = "sim_time";
-
-/// The texts and views of a recording, in addition to the simulation itself.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RecordingOptions {
-    /// Its identity: the viewer merges recordings with the same one.
-    pub id: String,
-    /// Its subject, for example the scenario's name: the viewer keeps one layout for all recordings with the same name.
-    /// Not empty.
-    pub application: String,
-    /// Its title in the viewer, for example the scenario's name and the settings that differ from its file.
-    pub title: String,
-    /// A one-line description; may be empty.
-    pub description: String,
-    /// The scenario as text, in Markdown.
-    pub document: String,
-    /// The part of the plane that the crowd views show.
-    pub view: Region,
-    /// The densities with the first and the last color, P/m².
-    pub density_range: [f64; 2],
-    /// The speeds with the first and the last color, m/s.
-    pub speed_range: [f64; 2],
-    /// The time that the viewer shows first, seconds; `None`: the time of the highest density. At a measurement: the
-    /// beginning.
-    pub opens_at: Option<f64>,
-    /// The time of the first frame, seconds.
-    pub begins_at: f64,
-    /// The end of the run as far as it is known; the loop that plays first does not go beyond it.
-    pub ends_at: f64,
-    /// The debug agents.
-    pub debug: DebugAgents,
-    /// The mass of an average person, kg, if walls are colored by the force on them.
-    pub body_mass: Option<f64>,
-    /// The outlines of what is measured, meters, each with its name.
-    pub measured: Vec<(String, Vec<Vector>)>,
-    /// Texts.
-    pub labels: Vec<Label>,
-    /// Upper bound on the agents that enter: with many, fewer arrivals are in the log of events.
-    pub entering: u64,
-}
+use scene::{obstacles, ways};
+use session::{Debug, Session};
+use stream::Output;
 
 /// Writes a recording, frame by frame.
 ///
@@ -162,7 +104,11 @@ impl Recorder {
         let scene = simulation.scene();
         let log_own = |stream: &RecordingStream| {
             let document = text::of_run(stream, scene, options)?;
-            log_scene(stream, simulation, options)?;
+            scene::log(stream, simulation, options)?;
+            stats::log_places(stream, scene)?;
+            if options.body_mass.is_some() {
+                wall_forces::log_style(stream)?;
+            }
             let terms = arrows::acting(scene);
             let focuses = names.iter();
             let focuses = focuses.map(|name| Focus::begin(stream, name.clone(), &terms));
@@ -175,11 +121,11 @@ impl Recorder {
         let content = Content {
             has_journeys: !scene.journeys.places.is_empty(),
             has_stages: scenery::has_stages(scene),
-            has_waiting: places::has_waiting(scene),
-            fields: places::fields(scene),
+            has_waiting: stats::has_waiting(scene),
+            fields: ways::entities(scene),
             has_wall_forces: options.body_mass.is_some(),
             followed: names.clone(),
-            ..Content::new(kind, geometry::has_outside(scene.walls.obstacles()))
+            ..Content::new(kind, obstacles::has_outside(scene.walls.obstacles()))
         };
         Ok(Self {
             session: Session::begin(output, options.clone(), content, log_own)?,
@@ -218,7 +164,7 @@ impl Recorder {
         }
         snapshot.events = self.events.new_lines(simulation);
         snapshot.evacuated = Some(self.events.evacuated);
-        self.moment.see(&snapshot);
+        self.moment.update(&snapshot);
         options.ends_at = time;
         snapshot
     }
@@ -228,12 +174,8 @@ impl Recorder {
     /// # Errors
     /// An earlier frame could not be written.
     pub fn note(&mut self, clock: &Clock, text: &str) -> Result<(), RecordingError> {
-        self.session.note(vec![Line {
-            frame: clock.frame().cast_signed(),
-            time: clock.time(),
-            text: text.to_owned(),
-            level: TextLogLevel::INFO,
-        }])
+        let at = (clock.frame().cast_signed(), clock.time());
+        self.session.note(vec![Line::info(at, text.to_owned())])
     }
 
     /// Adds the results of the run, in words and as JSON.
@@ -251,14 +193,10 @@ impl Recorder {
     /// Data could not be written, for example because the disk is full; or the viewer is gone or took no data for 2 s.
     pub fn finish(mut self) -> Result<(), RecordingError> {
         let found = self.moment.at;
-        if let Some((frame, time)) = found {
+        if let Some(at) = found {
             // A click on this line goes there.
-            self.session.note(vec![Line {
-                frame,
-                time,
-                text: "Look here first.".to_owned(),
-                level: TextLogLevel::INFO,
-            }])?;
+            let line = Line::info(at, "Look here first.".to_owned());
+            self.session.note(vec![line])?;
         }
         self.session
             .finish(found.map(|(_, time)| time), self.moment.view)
@@ -285,30 +223,4 @@ pub fn record_moment(
     })?;
     recorder.session.write(snapshot)?;
     recorder.finish()
-}
-
-/// Logs the static data of a scene before the first frame.
-fn log_scene(
-    stream: &RecordingStream,
-    simulation: &Simulation,
-    options: &RecordingOptions,
-) -> Result<(), error::Cause> {
-    let scene: &Scene = simulation.scene();
-    let mut names = Names::of_scene(&options.view, scene);
-    places::log(stream, scene, &mut names)?;
-    geometry::log(stream, scene, simulation.frame().agents, &mut names)?;
-    stats::log_entrances(stream, scene)?;
-    places::log_ways(stream, scene)?;
-    places::log_series(stream, scene)?;
-    markers::log(stream, scene, options, &mut names)?;
-    names.log(stream)?;
-    if options.body_mass.is_some() {
-        wall_forces::log_style(stream)?;
-    }
-    Ok(())
-}
-
-fn set_time(stream: &RecordingStream, frame: i64, time: f64) {
-    stream.set_time_sequence(FRAME, frame);
-    stream.set_duration_secs(SIM_TIME, time);
 }

@@ -11,7 +11,8 @@ use rerun::external::re_log_types::StoreKind;
 use rerun::{ChunkStore, ChunkStoreConfig, EntityPath, TimelineName};
 
 use super::error::RecordingError;
-use super::{FRAME, SIM_TIME, crowd, text};
+use super::frame::{FRAME, SIM_TIME, crowd};
+use super::text;
 use crate::engine::math::Vector;
 
 const POSITIONS: &str = "Points2D:positions";
@@ -73,15 +74,15 @@ impl Recorded {
             text: String::new(),
             report: None,
         };
-        recorded.take(&store);
+        recorded.add(&store);
         match recorded.frames.is_empty() {
             true => Err(unread(format!("it has no crowd at {}", crowd::ENTITY))),
             false => Ok(recorded),
         }
     }
 
-    /// Takes the rows of the crowd, the walls and the text.
-    fn take(&mut self, store: &ChunkStore) {
+    /// Adds the rows of the crowd, the walls and the text.
+    fn add(&mut self, store: &ChunkStore) {
         let [agents, walls, document, report] =
             [crowd::ENTITY, WALLS, text::DOCUMENT, text::REPORT].map(EntityPath::from);
         let [frame, time] = [FRAME, SIM_TIME].map(TimelineName::from_static_str);

@@ -1,20 +1,46 @@
-//! A recording that has begun: the common part of recordings of runs and of measurements.
+//! A recording that has begun: the common part of recordings of runs and of measurements. A thread turns snapshots into
+//! rows.
+
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::JoinHandle;
 
 use rerun::RecordingStream;
 
-use super::crowd::Maps;
-use super::error::{Cause, RecordingError};
-use super::events::Line;
-use super::layout::{Content, Opening};
-use super::output::Output;
-use super::snapshot::Snapshot;
-use super::text::Document;
-use super::writer::{Debug, Writer};
-use super::{RecordingOptions, bars, blueprint, crowd, stats, text};
+use super::debug::focus::Focus;
+use super::debug::layers::Layer;
+use super::error::{Cause, GONE, RecordingError};
+use super::frame::crowd::{self, Crowd, Maps};
+use super::frame::events::{self, Line};
+use super::frame::{Snapshot, set_time, stats, wall_forces};
+use super::layout::{Content, Opening, blueprint};
+use super::options::RecordingOptions;
+use super::scene::bars;
+use super::stream::Output;
+use super::text::{self, Document};
+
+/// Maximum number of queued snapshots; the simulation waits when the queue is full.
+const QUEUE: usize = 4;
+
+/// The layers that show the debug agents.
+#[derive(Default)]
+pub struct Debug {
+    /// The layers with all of them.
+    pub layers: Vec<Layer>,
+    /// The followed ones.
+    pub focuses: Vec<Focus>,
+}
+
+/// The items that the thread writes.
+enum Item {
+    Frame(Box<Snapshot>),
+    Lines(Vec<Line>),
+}
 
 pub struct Session {
     output: Output,
-    writer: Writer,
+    /// `None` once the thread has been asked to end.
+    items: Option<SyncSender<Item>>,
+    thread: Option<JoinHandle<Result<(), Cause>>>,
     pub options: RecordingOptions,
     content: Content,
     document: Document,
@@ -29,7 +55,8 @@ impl Session {
         content: Content,
         log_own: impl FnOnce(&RecordingStream) -> Result<(Document, Debug), Cause>,
     ) -> Result<Self, RecordingError> {
-        let begin = |stream: &RecordingStream| -> Result<(Document, Writer), Cause> {
+        let (items, queue) = sync_channel(QUEUE);
+        let begin = |stream: &RecordingStream| -> Result<_, Cause> {
             let opening = match output.is_live() {
                 true => Opening::Live,
                 false => Opening::Empty,
@@ -42,21 +69,46 @@ impl Session {
             crowd::log_style(stream)?;
             stats::log_style(stream)?;
             stream.flush_blocking()?;
-            Ok((document, Writer::start(stream.clone(), maps, debug)?))
+            let stream = stream.clone();
+            let thread = std::thread::Builder::new().name("recording".to_owned());
+            let thread = thread.spawn(move || write_all(&stream, queue, maps, debug))?;
+            Ok((document, thread))
         };
-        let (document, writer) = output.checked(begin(&output.stream))?;
+        let (document, thread) = output.checked(begin(&output.stream))?;
         Ok(Self {
             output,
-            writer,
+            items: Some(items),
+            thread: Some(thread),
             options,
             content,
             document,
         })
     }
 
-    /// Adds a frame.
+    /// Adds a frame. Errors of earlier frames are reported here or by [`finish`](Self::finish).
     pub fn write(&mut self, snapshot: Snapshot) -> Result<(), RecordingError> {
-        self.output.checked(self.writer.write(snapshot))
+        self.send(Item::Frame(Box::new(snapshot)))
+    }
+
+    /// Adds lines to the log of events.
+    pub fn note(&mut self, lines: Vec<Line>) -> Result<(), RecordingError> {
+        self.send(Item::Lines(lines))
+    }
+
+    fn send(&mut self, item: Item) -> Result<(), RecordingError> {
+        let queue = self.items.as_ref();
+        if queue.is_some_and(|queue| queue.send(item).is_ok()) {
+            return Ok(());
+        }
+        let ended = self.end_thread().and(Err(GONE.into()));
+        self.output.checked(ended)
+    }
+
+    /// Waits until all items are written.
+    fn end_thread(&mut self) -> Result<(), Cause> {
+        self.items = None;
+        let joined = self.thread.take().map(JoinHandle::join);
+        joined.map_or(Ok(()), |result| result.unwrap_or(Err(GONE.into())))
     }
 
     /// Logs more static data.
@@ -65,11 +117,6 @@ impl Session {
         log: impl FnOnce(&RecordingStream) -> Result<(), Cause>,
     ) -> Result<(), RecordingError> {
         self.output.checked(log(&self.output.stream))
-    }
-
-    /// Adds lines to the log of events.
-    pub fn note(&mut self, lines: Vec<Line>) -> Result<(), RecordingError> {
-        self.output.checked(self.writer.note(lines))
     }
 
     /// Sends the buffered data, then the final layout, closes the file and checks that it is complete. If the moment
@@ -82,7 +129,7 @@ impl Session {
     ) -> Result<(), RecordingError> {
         self.options.opens_at = found.or(self.options.opens_at);
         let mut end = || {
-            self.writer.finish()?;
+            self.end_thread()?;
             let stream = &self.output.stream;
             if let Some(time) = found {
                 self.document.log(stream, found)?;
@@ -97,4 +144,37 @@ impl Session {
         self.output.checked(ended)?;
         self.output.close()
     }
+}
+
+/// Writes all items of the queue.
+fn write_all(
+    stream: &RecordingStream,
+    queue: Receiver<Item>,
+    maps: Maps,
+    mut debug: Debug,
+) -> Result<(), Cause> {
+    let mut crowd = Crowd::new(maps);
+    for item in queue {
+        let snapshot = match item {
+            Item::Frame(snapshot) => snapshot,
+            Item::Lines(lines) => {
+                events::log(stream, &lines)?;
+                continue;
+            }
+        };
+        events::log(stream, &snapshot.events)?;
+        set_time(stream, snapshot.frame, snapshot.time);
+        crowd.log(stream, &snapshot)?;
+        if let Some(parts) = &snapshot.wall_forces {
+            wall_forces::log(stream, parts)?;
+        }
+        for layer in &mut debug.layers {
+            layer.log(stream, &snapshot.open)?;
+        }
+        for (focus, place) in debug.focuses.iter_mut().zip(&snapshot.followed) {
+            focus.log(stream, place.map(|k| &snapshot.open[k]))?;
+        }
+        stats::log(stream, &snapshot)?;
+    }
+    Ok(())
 }

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use rerun::external::arrow::array::{ArrayRef, Float64Array, StringArray, UInt64Array};
 use rerun::{AnyValues, RecordingStream, TextDocument};
 
+use super::debug::DebugAgents;
+use super::debug::arrows;
 use super::error::Cause;
-use super::{DebugAgents, RecordingOptions, arrows};
+use super::options::RecordingOptions;
 use crate::analysis::round::brief;
 use crate::engine::profile::Term;
 use crate::engine::scene::Scene;

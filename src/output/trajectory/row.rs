@@ -1,7 +1,7 @@
 //! One agent in one frame.
 
 use rayon::prelude::*;
-use serde::ser::{Serialize, SerializeStruct, Serializer};
+use serde::Serialize;
 
 use crate::engine::agents::Agents;
 use crate::engine::frame::Frame;
@@ -12,7 +12,7 @@ use crate::engine::simulation::Simulation;
 const STANDING: f64 = 0.01;
 
 /// All quantities of one agent in one frame. The fields are the columns of a CSV file. SI units.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Row<'a> {
     /// The frame's number at the file's own rate, from 0.
     pub frame: u64,
@@ -82,12 +82,9 @@ pub enum Cell<'a> {
     Name(Option<&'a str>),
 }
 
-/// Number of fields of a [`Row`].
-pub const FIELDS: usize = 27;
-
 impl<'a> Row<'a> {
     /// The name, the meaning with its unit, and the value of each field.
-    pub fn cells(&self) -> [(&'static str, &'static str, Cell<'a>); FIELDS] {
+    pub fn cells(&self) -> [(&'static str, &'static str, Cell<'a>); 27] {
         use Cell::{Count, Name, Number};
         [
             (
@@ -166,20 +163,6 @@ impl<'a> Row<'a> {
             ("acc_x", "acceleration, m/s²", Number(self.acc_x)),
             ("acc_y", "acceleration, m/s²", Number(self.acc_y)),
         ]
-    }
-}
-
-impl Serialize for Row<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut row = serializer.serialize_struct("Row", FIELDS)?;
-        for (name, _, cell) in self.cells() {
-            match cell {
-                Cell::Count(count) => row.serialize_field(name, &count)?,
-                Cell::Number(number) => row.serialize_field(name, &number)?,
-                Cell::Name(text) => row.serialize_field(name, &text)?,
-            }
-        }
-        row.end()
     }
 }
 

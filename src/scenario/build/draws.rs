@@ -5,8 +5,8 @@ use crate::engine::traits::Traits;
 use crate::scenario::error::numbers::brief;
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::keys::distribution::{
-    Draw, Exponential, Lognormal, MASSES, RADII, SPEED, SPEEDS, Spread, WAITS, WEIDMANN_AGE,
-    Weighted,
+    Bounds, Draw, Exponential, Lognormal, MASSES, RADII, SPEED, SPEEDS, Spread, WAITS,
+    WEIDMANN_AGE, Weighted,
 };
 use crate::scenario::keys::people::People;
 
@@ -22,8 +22,9 @@ impl Draw {
 
     /// The distribution, truncated to `range`.
     fn distribution(&self, range: [f64; 2]) -> Result<Distribution, Problem> {
-        let made = |name: &str, family: &Family, min: Option<f64>, max: Option<f64>| {
+        let made = |name: &str, family: &Family, given: Option<Bounds>| {
             let [low, high] = range;
+            let (min, max) = given.map_or((None, None), |given| (given.min, given.max));
             let bounds = [min.unwrap_or(low).max(low), max.unwrap_or(high).min(high)];
             Distribution::new(family, bounds).map_err(|error| {
                 let reason = match error {
@@ -43,44 +44,41 @@ impl Draw {
             })
         };
         let from = match self {
-            Self::Number(value) => return made("", &Family::Constant(*value), None, None),
-            Self::WeidmannAge => return made("", &Family::WeidmannAge(ADULTS), None, None),
+            Self::Number(value) => return made("", &Family::Constant(*value), None),
+            Self::WeidmannAge => return made("", &Family::WeidmannAge(ADULTS), None),
             Self::From(from) => from.as_ref(),
         };
         match from {
-            Spread::Uniform(ends) => made("uniform", &Family::Uniform(*ends), None, None),
+            Spread::Uniform(ends) => made("uniform", &Family::Uniform(*ends), None),
             Spread::Normal(of) => {
                 let family = Family::Normal([of.mean, of.std]);
-                made("normal", &family, of.min, of.max)
+                made("normal", &family, Some(of.bounds))
             }
             Spread::Lognormal(of) => made(
                 "lognormal",
                 &of.family().under("lognormal")?,
-                of.min,
-                of.max,
+                Some(of.bounds),
             ),
             Spread::Weibull(of) => {
                 let family = Family::Weibull([of.scale, of.shape]);
-                made("weibull", &family, of.min, of.max)
+                made("weibull", &family, Some(of.bounds))
             }
             Spread::Gamma(of) => {
                 let family = Family::Gamma([of.shape, of.scale]);
-                made("gamma", &family, of.min, of.max)
+                made("gamma", &family, Some(of.bounds))
             }
             Spread::Exponential(Exponential::Mean(mean)) => {
-                made("exponential", &Family::Exponential(*mean), None, None)
+                made("exponential", &Family::Exponential(*mean), None)
             }
             Spread::Exponential(Exponential::Bounded(of)) => {
                 let family = Family::Exponential(of.mean);
-                made("exponential", &family, of.min, of.max)
+                made("exponential", &family, Some(of.bounds))
             }
             Spread::Values(values) => {
                 let values = values.iter().map(|&Weighted(pair)| pair).collect();
-                made("values", &Family::Values(values), None, None)
+                made("values", &Family::Values(values), None)
             }
-            Spread::WeidmannAge(ages) => {
-                made("weidmann_age", &Family::WeidmannAge(*ages), None, None)
-            }
+            Spread::WeidmannAge(ages) => made("weidmann_age", &Family::WeidmannAge(*ages), None),
         }
     }
 }

@@ -2,16 +2,20 @@
 
 use crate::engine::profile::{Blend, BlendStep, Profile};
 use crate::scenario::error::numbers::brief;
-use crate::scenario::error::quote::shown;
-use crate::scenario::error::{Problem, Under, suggestion};
-use crate::scenario::keys::catalog;
-use crate::scenario::keys::catalog::Parameters;
+use crate::scenario::error::{Problem, Under};
+use crate::scenario::keys::catalog::{self, Parameters, ProfileError};
 use crate::scenario::keys::profiles::{CustomProfile, ProfileChoice, ProfileName, Step};
+
+impl From<ProfileError> for Problem {
+    fn from(error: ProfileError) -> Self {
+        Self::new("", error.to_string())
+    }
+}
 
 /// Converts a profile or blend; the scenario-wide values `overriding` override its own.
 pub fn blend(choice: &ProfileChoice, overriding: &Parameters) -> Result<Blend, Problem> {
     let blend = match choice {
-        ProfileChoice::Named(ProfileName(name)) => named(name, overriding)?,
+        ProfileChoice::Named(ProfileName(name)) => catalog::named(name, overriding)?,
         ProfileChoice::Custom(custom) => custom_blend(custom, overriding)?,
     };
     let (min, max) = (blend.sph.rest_density_min, blend.sph.rest_density_max);
@@ -22,29 +26,6 @@ pub fn blend(choice: &ProfileChoice, overriding: &Parameters) -> Result<Blend, P
     Ok(blend)
 }
 
-fn named(name: &str, parameters: &Parameters) -> Result<Blend, Problem> {
-    catalog::named(name, parameters)
-        .ok_or_else(|| unknown(name))?
-        .map_err(|error| Problem::new("", error.to_string()))
-}
-
-fn unknown(name: &str) -> Problem {
-    let known = catalog::names();
-    let names = known.join(", ");
-    let near = if name.ends_with('-') {
-        "; a shell takes an unquoted `>` for a redirection: quote the name, or write sf-sph or rvo-sph".to_owned()
-    } else {
-        suggestion(name, known)
-    };
-    Problem::new(
-        "",
-        format!(
-            "unknown profile `{}`{near} (known profiles: {names})",
-            shown(name)
-        ),
-    )
-}
-
 fn custom_blend(custom: &CustomProfile, overriding: &Parameters) -> Result<Blend, Problem> {
     checked(custom)?;
     let parameters = overriding.or(&custom.parameters);
@@ -52,9 +33,9 @@ fn custom_blend(custom: &CustomProfile, overriding: &Parameters) -> Result<Blend
         return blend_of_steps(custom, steps, overriding);
     }
     if let Some(ProfileName(base)) = &custom.base
-        && catalog::plain(base, &parameters).is_none()
+        && let Err(ProfileError::IsBlend(_)) = catalog::plain(base, &parameters)
     {
-        let mut blend = named(base, &parameters).under("base")?;
+        let mut blend = catalog::named(base, &parameters)?;
         if let Some(name) = &custom.name {
             blend.name.clone_from(name);
         }
@@ -69,7 +50,9 @@ fn custom_blend(custom: &CustomProfile, overriding: &Parameters) -> Result<Blend
 /// A profile that is not a blend.
 fn custom_profile(custom: &CustomProfile, parameters: &Parameters) -> Result<Profile, Problem> {
     let profile = match (&custom.base, custom.navigation) {
-        (Some(ProfileName(base)), _) => plain(base, parameters).under("base")?,
+        (Some(ProfileName(base)), _) => catalog::plain(base, parameters)
+            .map_err(Problem::from)
+            .under("base")?,
         (None, Some(kind)) => parameters.profile("custom", kind, custom.sph.unwrap_or(true)),
         (None, None) => {
             let reason = "a blend must consist of plain profiles, not of blends";
@@ -78,17 +61,6 @@ fn custom_profile(custom: &CustomProfile, parameters: &Parameters) -> Result<Pro
     };
     let name = custom.name.clone().unwrap_or(profile.name);
     Ok(Profile { name, ..profile })
-}
-
-fn plain(name: &str, parameters: &Parameters) -> Result<Profile, Problem> {
-    catalog::plain(name, parameters).ok_or_else(|| {
-        if catalog::named(name, parameters).is_some() {
-            let reason = format!("a blend must consist of plain profiles; `{name}` is a blend");
-            Problem::new("", reason)
-        } else {
-            unknown(name)
-        }
-    })
 }
 
 fn checked(custom: &CustomProfile) -> Result<(), Problem> {
@@ -138,7 +110,7 @@ fn blend_of_steps(
 
 fn step_profile(choice: &ProfileChoice, parameters: &Parameters) -> Result<Profile, Problem> {
     match choice {
-        ProfileChoice::Named(ProfileName(name)) => plain(name, parameters),
+        ProfileChoice::Named(ProfileName(name)) => Ok(catalog::plain(name, parameters)?),
         ProfileChoice::Custom(custom) => {
             checked(custom)?;
             custom_profile(custom, &parameters.or(&custom.parameters))

@@ -6,6 +6,7 @@ use crate::engine::forces::contact::Contact;
 use crate::engine::forces::viscosity::Viscosity;
 use crate::engine::forces::walking::WalkingLaw;
 use crate::engine::profile::{Blend, BlendError, BlendStep, Navigation, Profile};
+use crate::scenario::error::{quote::shown, suggestion};
 use crate::scenario::keys::calibrated;
 
 /// The names of §5.5.
@@ -81,31 +82,60 @@ pub fn resolved<'a>(name: &'a str, parameters: &Parameters) -> (&'a str, Paramet
     }
 }
 
-/// A profile or blend with some parameters changed; `None` for an unknown name.
-pub fn named(name: &str, parameters: &Parameters) -> Option<Result<Blend, BlendError>> {
+/// Why there is no such profile.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ProfileError {
+    /// No profile has this name.
+    #[error("unknown profile `{}`{} (known profiles: {})", shown(.0), advice(.0), names().join(", "))]
+    Unknown(String),
+    /// It is a blend, where only a plain profile may be.
+    #[error("a blend must consist of plain profiles; `{0}` is a blend")]
+    IsBlend(String),
+    /// Its profiles do not fit together.
+    #[error(transparent)]
+    Blend(#[from] BlendError),
+}
+
+/// Advice for an unknown name.
+fn advice(name: &str) -> String {
+    if name.ends_with('-') {
+        "; a shell takes an unquoted `>` for a redirection: quote the name, or write sf-sph or rvo-sph".to_owned()
+    } else {
+        suggestion(name, names())
+    }
+}
+
+/// The two profiles of a blend of the paper.
+fn ends_of_blend(name: &str) -> Option<(&str, &str)> {
     let alias = ALIASES.into_iter().find(|&(alias, _)| alias == name);
     let name = alias.map_or(name, |(_, name)| name);
-    let (first, second) = match name.split_once("->") {
-        Some((first, second)) if NAMES.contains(&name) => (first, Some(second)),
-        _ => (name, None),
+    name.split_once("->").filter(|_| NAMES.contains(&name))
+}
+
+/// A profile or blend with some parameters changed.
+///
+/// # Errors
+/// No profile or blend has this name.
+pub fn named(name: &str, parameters: &Parameters) -> Result<Blend, ProfileError> {
+    let Some((first, second)) = ends_of_blend(name) else {
+        let (_, all) = resolved(name, parameters);
+        return Ok(Blend::single(plain(name, parameters)?, all.sph()));
     };
-    let first = plain(first, parameters)?;
-    let Some(second) = second else {
-        let (_, parameters) = resolved(name, parameters);
-        return Some(Ok(Blend::single(first, parameters.sph())));
-    };
-    let profiles = [first, plain(second, parameters)?];
+    let profiles = [plain(first, parameters)?, plain(second, parameters)?];
     let steps = BLEND_DENSITIES.into_iter().zip(profiles);
     let steps = steps.map(|(at_density, profile)| BlendStep {
         at_density,
         profile,
     });
-    let name = name.to_owned();
-    Some(Blend::new(name, parameters.sph(), steps.collect()))
+    let name = format!("{first}->{second}");
+    Ok(Blend::new(name, parameters.sph(), steps.collect())?)
 }
 
-/// A calibrated profile, or one of the five of §5.5 that are not blends; `None` for other names.
-pub fn plain(name: &str, parameters: &Parameters) -> Option<Profile> {
+/// A calibrated profile, or one of the five of §5.5 that are not blends.
+///
+/// # Errors
+/// No profile has this name, or it is a blend.
+pub fn plain(name: &str, parameters: &Parameters) -> Result<Profile, ProfileError> {
     let (base, parameters) = resolved(name, parameters);
     let (kind, sph) = match base {
         "sf" => (NavigationKind::Social, false),
@@ -113,7 +143,8 @@ pub fn plain(name: &str, parameters: &Parameters) -> Option<Profile> {
         "sf+sph" => (NavigationKind::Social, true),
         "rvo+sph" => (NavigationKind::Rvo, true),
         "sph" => (NavigationKind::Goal, true),
-        _ => return None,
+        _ if ends_of_blend(name).is_some() => return Err(ProfileError::IsBlend(name.to_owned())),
+        _ => return Err(ProfileError::Unknown(name.to_owned())),
     };
-    Some(parameters.profile(name, kind, sph))
+    Ok(parameters.profile(name, kind, sph))
 }

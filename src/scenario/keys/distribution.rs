@@ -61,16 +61,9 @@ pub enum Spread {
 #[serde(transparent)]
 pub struct Weighted(#[schemars(inner(range(min = -LARGEST, max = LARGEST)))] pub [f64; 2]);
 
-/// The parameters of a normal distribution.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Normal {
-    /// The mean.
-    #[schemars(range(min = -LARGEST, max = LARGEST))]
-    pub mean: f64,
-    /// The standard deviation.
-    #[schemars(range(min = 0, max = LARGEST))]
-    pub std: f64,
+/// The bounds of a distribution.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+pub struct Bounds {
     /// No draw is below this. Default: the least value of the key.
     #[schemars(range(min = -LARGEST, max = LARGEST))]
     pub min: Option<f64>,
@@ -79,9 +72,23 @@ pub struct Normal {
     pub max: Option<f64>,
 }
 
+/// The parameters of a normal distribution.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Normal {
+    /// The mean.
+    #[schemars(range(min = -LARGEST, max = LARGEST))]
+    pub mean: f64,
+    /// The standard deviation.
+    #[schemars(range(min = 0, max = LARGEST))]
+    pub std: f64,
+    #[serde(flatten)]
+    pub bounds: Bounds,
+}
+
 /// The parameters of a log-normal distribution: mean and standard deviation of the variable or of its logarithm.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct Lognormal {
     /// The mean of the variable, with `std`.
     #[schemars(range(max = LARGEST), extend("exclusiveMinimum" = 0))]
@@ -95,17 +102,13 @@ pub struct Lognormal {
     /// The standard deviation of the logarithm, with `log_mean`.
     #[schemars(range(min = 0, max = 100))]
     pub log_std: Option<f64>,
-    /// No draw is below this. Default: the least value of the key.
-    #[schemars(range(min = -LARGEST, max = LARGEST))]
-    pub min: Option<f64>,
-    /// No draw is above this. Default: the largest value of the key.
-    #[schemars(range(min = -LARGEST, max = LARGEST))]
-    pub max: Option<f64>,
+    #[serde(flatten)]
+    pub bounds: Bounds,
 }
 
 /// The parameters of a Weibull or gamma distribution.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct Scaled {
     /// The scale, in the unit of the variable.
     #[schemars(range(max = LARGEST), extend("exclusiveMinimum" = 0))]
@@ -113,12 +116,8 @@ pub struct Scaled {
     /// The shape.
     #[schemars(range(min = 0.01, max = LARGEST_SHAPE))]
     pub shape: f64,
-    /// No draw is below this. Default: the least value of the key.
-    #[schemars(range(min = -LARGEST, max = LARGEST))]
-    pub min: Option<f64>,
-    /// No draw is above this. Default: the largest value of the key.
-    #[schemars(range(min = -LARGEST, max = LARGEST))]
-    pub max: Option<f64>,
+    #[serde(flatten)]
+    pub bounds: Bounds,
 }
 
 /// The mean of an exponential distribution, or an object with its bounds
@@ -131,17 +130,13 @@ pub enum Exponential {
 
 /// The parameters of an exponential distribution.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct BoundedExponential {
     /// The mean.
     #[schemars(range(max = LARGEST), extend("exclusiveMinimum" = 0))]
     pub mean: f64,
-    /// No draw is below this. Default: the least value of the key.
-    #[schemars(range(min = -LARGEST, max = LARGEST))]
-    pub min: Option<f64>,
-    /// No draw is above this. Default: the largest value of the key.
-    #[schemars(range(min = -LARGEST, max = LARGEST))]
-    pub max: Option<f64>,
+    #[serde(flatten)]
+    pub bounds: Bounds,
 }
 
 /// The schema of a number in `range` or a distribution.

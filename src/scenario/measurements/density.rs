@@ -41,10 +41,7 @@ impl Measure for Density {
     }
 
     fn about(&self) -> About {
-        About {
-            density_until: Some(self.at_secs),
-            ..About::default()
-        }
+        About::with_density_until(self.at_secs)
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {

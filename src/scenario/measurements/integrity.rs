@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::fence::Fence;
 use super::{Measure, Observed};
-use crate::engine::math::{Vector, are_finite, numbers_are_finite};
+use crate::engine::math::{Vector, are_finite};
 use crate::engine::simulation::Simulation;
 
 /// The number of agents that were inside an obstacle or moved through a wall, checked without the engine's own
@@ -114,7 +114,7 @@ impl Watched {
         let fields = frame.fields;
         let vectors = [&agents.position, &agents.velocity, &fields.acceleration];
         let finite = vectors.into_iter().all(|v| are_finite(v));
-        self.non_finite_frames += u64::from(!finite || !numbers_are_finite(&fields.density));
+        self.non_finite_frames += u64::from(!finite || !are_finite(&fields.density));
         let squares = agents.velocity.iter().map(Vector::norm_squared);
         self.highest_speed = squares.fold(0.0, f64::max).sqrt().max(self.highest_speed);
     }

@@ -125,6 +125,16 @@ pub struct About {
     pub has_thresholds: bool,
 }
 
+impl About {
+    /// A measurement that needs densities until a time, seconds.
+    fn with_density_until(secs: f64) -> Self {
+        Self {
+            density_until: Some(secs),
+            ..Self::default()
+        }
+    }
+}
+
 /// A measurement of a scenario.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]

@@ -67,10 +67,7 @@ impl Measure for SnapshotAt {
     }
 
     fn about(&self) -> About {
-        About {
-            density_until: Some(self.at_secs),
-            ..About::default()
-        }
+        About::with_density_until(self.at_secs)
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {

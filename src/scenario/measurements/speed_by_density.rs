@@ -47,10 +47,7 @@ impl Measure for SpeedByDensity {
     }
 
     fn about(&self) -> About {
-        About {
-            density_until: Some(self.until_secs),
-            ..About::default()
-        }
+        About::with_density_until(self.until_secs)
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {

@@ -14,18 +14,22 @@
 use std::f64::consts::LN_2;
 use std::ops::Range;
 
+use schemars::JsonSchema;
+
 use super::Walkers;
 use super::headway::AGAINST;
+use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
 
 /// Parameters of the law of the density ahead.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
+#[schemars(default)]
 pub struct DensityAhead {
-    /// ρ_jam, P/m²: the density ahead at which an agent stands.
+    /// The jam density (`density-ahead`), P/m²: agents stand before a crowd of this density. Higher: faster crowds.
     pub jam_density: f64,
-    /// γ, P/m².
+    /// Weidmann's γ (`density-ahead`), P/m²: how soon agents slow down. Higher: faster at all densities below the jam.
     pub slowing_density: f64,
 }
 
@@ -57,14 +61,17 @@ impl DensityAhead {
 
     /// |∇ρ^ahead| is at most ρ times the integral of |∂K/∂a|, about 4/h. ρ |ds/dρ| = s₀ γ/ρ e^(−γ (1/ρ − 1/ρ_jam)) is
     /// largest at ρ = γ, or at ρ_jam if that is lower.
-    pub(super) fn steepness(&self, speed: f64, support: f64) -> f64 {
+    pub(super) fn rates(&self, of: &Extremes) -> Rates {
         let ratio = self.slowing_density / self.jam_density;
         let most = if ratio < 1.0 {
             (ratio - 1.0).exp()
         } else {
             ratio
         };
-        speed * most * 4.0 / support
+        Rates {
+            steepness: of.speed * most * 4.0 / of.sph.support_radius,
+            ..Rates::default()
+        }
     }
 
     /// s_i − s_i^law, m/s. `runs` contain all agents in view, and some out of view.

@@ -5,16 +5,20 @@
 //! a_i = −γ(ρ_i) v_i with γ = γ₀ max(0, ρ_i − ρ_start). With the goal force of Eq. 17 an agent of mass 1 walks at
 //! s_i/(1 + γ τ/K^goal).
 
+use schemars::JsonSchema;
+
+use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 
 /// Parameters of the drag.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
+#[schemars(default)]
 pub struct Drag {
-    /// γ₀, m²/s.
+    /// γ₀ (`drag`), m²/s: the friction per density above `drag_from_density`. Higher: slower crowds.
     pub drag_per_density: f64,
-    /// ρ_start, P/m²: below this density there is no drag. The density of a lone agent is that of its own mass, up to
-    /// 1.55 P/m².
+    /// The density (`drag`), P/m², at which the friction begins. Below 1.55 it slows lone agents, too, whose density is
+    /// that of their own mass.
     pub drag_from_density: f64,
 }
 
@@ -27,7 +31,18 @@ impl Default for Drag {
     }
 }
 
+/// The highest density of a crowd relative to ρ⁰max: beyond, pressure drives it apart.
+const CROWDED: f64 = 2.0;
+
 impl Drag {
+    /// γ in the densest crowds.
+    pub(super) fn rates(&self, of: &Extremes) -> Rates {
+        Rates {
+            friction: self.rate(CROWDED * of.sph.rest_density_max),
+            ..Rates::default()
+        }
+    }
+
     /// γ, 1/s, at this density, P/m².
     pub fn rate(&self, density: f64) -> f64 {
         self.drag_per_density * (density - self.drag_from_density).max(0.0)

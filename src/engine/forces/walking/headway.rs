@@ -14,21 +14,27 @@
 
 use std::ops::Range;
 
+use schemars::JsonSchema;
+
 use super::{View, Walkers};
+use crate::engine::forces::rates::Rates;
 use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
 
 /// Parameters of the headway law.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
+#[schemars(default)]
 pub struct Headway {
-    /// T, seconds.
+    /// T (`headway`), seconds: the time gap. An agent with d meters to the nearest agent ahead walks at (d - l)/T.
+    /// Longer: slower crowds and smaller flows. Below about twice `relaxation_time` files stop and go.
     pub headway_time: f64,
-    /// ℓ, meters: the distance at which an agent stands.
+    /// l (`headway`), meters: the distance to the nearest agent ahead at which an agent stands. Longer: sparser queues.
     pub headway_length: f64,
-    /// w, meters: agents up to this far beside the line ahead count in full.
+    /// w (`headway`), meters: the half-width of the lane; its edges fade over another half of it. Wider: slower crowds.
     pub lane_half_width: f64,
-    /// t, seconds: agents look at the distance that they expect after this time; 0: at the distance now.
+    /// t (`headway`), seconds: agents look at the distance to the nearest agent ahead that they expect after this time.
+    /// Longer: faster behind agents that speed up, as before a door; no change in a crowd that moves as one.
     pub headway_anticipation: f64,
 }
 
@@ -91,12 +97,12 @@ impl Headway {
         }
     }
 
-    pub(super) fn steepness(&self) -> f64 {
-        1.0 / self.headway_time
-    }
-
-    pub(super) fn damping(&self) -> f64 {
-        self.headway_anticipation / self.headway_time
+    pub(super) fn rates(&self) -> Rates {
+        Rates {
+            steepness: 1.0 / self.headway_time,
+            damping: self.headway_anticipation / self.headway_time,
+            ..Rates::default()
+        }
     }
 
     /// s_i − s_i^law, m/s; zero, to the last bit, without agents in range. `runs` contain all agents in view, and some

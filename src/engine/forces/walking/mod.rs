@@ -19,6 +19,7 @@ pub use density_ahead::DensityAhead;
 pub use drag::Drag;
 pub use headway::Headway;
 
+use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::BLOCK;
@@ -62,7 +63,10 @@ struct Walkers<R: Real, S: Simd> {
 impl WalkingLaw {
     /// Whether the law lowers preferred speeds by the agents ahead.
     pub fn looks_ahead(&self) -> bool {
-        !matches!(self, Self::Drag(_))
+        match self {
+            Self::Headway(_) | Self::DensityAhead(_) => true,
+            Self::Drag(_) => false,
+        }
     }
 
     /// The farthest distance of agents that can slow an agent with this preferred speed, m/s, meters; `support` is
@@ -84,21 +88,21 @@ impl WalkingLaw {
         }
     }
 
-    /// The largest rate at which the lowered speed changes with the place of an agent, 1/s. `speed` is the preferred
-    /// speed, m/s.
-    pub fn steepness(&self, speed: f64, support: f64) -> f64 {
+    /// The rates at which the lowered speed changes with the place of an agent and with the velocity of the one ahead,
+    /// or the friction.
+    pub fn rates(&self, of: &Extremes) -> Rates {
         match self {
-            Self::Headway(law) => law.steepness(),
-            Self::DensityAhead(law) => law.steepness(speed, support),
-            Self::Drag(_) => 0.0,
+            Self::Headway(law) => law.rates(),
+            Self::DensityAhead(law) => law.rates(of),
+            Self::Drag(law) => law.rates(of),
         }
     }
 
-    /// The largest rate at which the lowered speed changes with the velocity of an agent ahead.
-    pub fn damping(&self) -> f64 {
+    /// Whether the law reads the density of the agent's place (Eq. 9) in every frame.
+    pub fn needs_density(&self) -> bool {
         match self {
-            Self::Headway(law) => law.damping(),
-            Self::DensityAhead(_) | Self::Drag(_) => 0.0,
+            Self::Headway(_) | Self::DensityAhead(_) => false,
+            Self::Drag(_) => true,
         }
     }
 

@@ -1,0 +1,209 @@
+//! The runs of a suite, judged.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use super::check::{Judgment, Runs};
+use super::file::Suite;
+use super::keys::{Case, Expected};
+use super::known::{check_runs, label};
+use super::report::{Finding, Report, Skipped, THROUGH_WALLS};
+use super::{data, diagrams, pictures};
+use crate::lab::error::LabError;
+use crate::lab::gallery::{distinct, save};
+use crate::lab::jobs::{read, results};
+use crate::lab::sweep::{Cell, Changes, Study, StudyError};
+use crate::runs::case::RunResult;
+use crate::runs::job::Listener;
+use crate::runs::store::Store;
+use crate::runs::summary::Summary;
+
+/// The part of a suite that is computed.
+pub struct Chosen<'a> {
+    /// The cases.
+    pub cases: Vec<&'a Case>,
+    /// The profiles; those of the study if there are none.
+    pub profiles: &'a [String],
+    /// The number of seeds; `None`: those of the study.
+    pub seeds: Option<u64>,
+    /// The folder with the data.
+    pub data: Option<&'a Path>,
+}
+
+/// What is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Judged {
+    /// Each seed: a case passes if it does with all of them.
+    Seeds,
+    /// Means over all seeds, with diagrams of all results.
+    Means,
+}
+
+/// The runs of the chosen cases, after validation.
+pub struct Planned<'a> {
+    suite: &'a Suite,
+    /// The cases whose data are there.
+    cases: Vec<&'a Case>,
+    /// The cases whose data are missing.
+    pub skipped: Vec<Skipped<'a>>,
+    /// The files of the data by the labels of their runs.
+    data: BTreeMap<String, PathBuf>,
+    /// The study.
+    pub study: Study,
+}
+
+impl Suite {
+    /// The runs of the chosen cases. Cases whose data are missing are skipped.
+    ///
+    /// # Errors
+    /// The study is invalid, or a check asks for a run or quantity that does not exist.
+    pub fn planned<'a>(&'a self, chosen: &Chosen<'a>) -> Result<Planned<'a>, StudyError> {
+        let (mut cases, mut skipped) = (Vec::new(), Vec::new());
+        let mut changes = Changes {
+            profiles: chosen.profiles,
+            seeds: chosen.seeds,
+            data: BTreeMap::new(),
+        };
+        for &case in &chosen.cases {
+            let files = self.files_of(case).map(|data| {
+                let path = chosen.data.map(|folder| folder.join(&data.file));
+                let path = path.filter(|path| path.is_file());
+                path.map(|path| (data.run.clone(), path)).ok_or(data)
+            });
+            match files.collect::<Result<Vec<_>, _>>() {
+                Ok(files) => {
+                    changes.data.extend(files);
+                    cases.push(case);
+                }
+                Err(data) => {
+                    let place = match chosen.data {
+                        Some(folder) => format!("{} has no {}", folder.display(), data.file),
+                        None => format!("needs --data DIR with {}", data.file),
+                    };
+                    let why = format!("{place}, from {}", data.source);
+                    skipped.push(Skipped { case, why });
+                }
+            }
+        }
+        let study = match cases.is_empty() {
+            true => Study::of_cells(&self.name, Vec::new(), None),
+            false => self.study(&changes)?,
+        };
+        if !cases.is_empty() {
+            check_runs(self, &study)?;
+        }
+        Ok(Planned {
+            suite: self,
+            cases,
+            skipped,
+            data: changes.data,
+            study,
+        })
+    }
+}
+
+impl<'a> Planned<'a> {
+    /// Computes the runs that are not in `store`, judges them, and writes tables and pictures.
+    ///
+    /// # Errors
+    /// A run fails, or a file cannot be written.
+    pub fn run(
+        self,
+        judged: Judged,
+        store: &Store,
+        listener: &dyn Listener,
+    ) -> Result<Report<'a>, LabError> {
+        let labels: BTreeSet<&str> = self.cases.iter().flat_map(|case| case.runs()).collect();
+        let wanted = |cell: &&Cell| labels.contains(label(cell));
+        let jobs = self.study.jobs(|cell| wanted(&cell));
+        let results = results(&jobs, store, listener)?.into_iter();
+        let results = results.map(|result| read::<RunResult>(&result));
+        let results: Vec<RunResult> = results.collect::<Result<_, _>>()?;
+        let cells: Vec<&Cell> = self.study.cells.iter().filter(wanted).collect();
+        let mut measured = Vec::new();
+        for run in self.data.into_keys() {
+            if let Some(cell) = cells.iter().find(|cell| label(cell) == run) {
+                let data = data::measured(&run, &cell.case)?;
+                measured.push((run, data));
+            }
+        }
+        let profiles = distinct(results.iter().map(|result| result.summary.profile.clone()));
+        let mut runs: BTreeMap<_, Vec<(&str, &Summary)>> = BTreeMap::new();
+        for (cell, RunResult { summary, .. }) in cells.iter().zip(&results) {
+            let profile = profiles
+                .iter()
+                .position(|profile| *profile == summary.profile);
+            let own = runs.entry((profile, cell.case.seed)).or_default();
+            own.push((label(cell), summary));
+        }
+        let measured = &measured;
+        let runs = runs.into_values().map(|own| Runs { own, measured });
+        let runs: Vec<Runs> = runs.collect();
+        let mut findings = Vec::new();
+        for &case in &self.cases {
+            for runs in &runs {
+                findings.push(Finding {
+                    case,
+                    profile: runs.profile().to_owned(),
+                    seed: Some(runs.seed()),
+                    checks: judgments(case, runs)?,
+                });
+            }
+        }
+        if judged == Judged::Means {
+            findings = means(findings);
+        }
+        let report = Report {
+            suite: self.suite,
+            profiles,
+            findings,
+            skipped: self.skipped,
+        };
+        report.write(store)?;
+        if judged == Judged::Means {
+            save(store.folder(), diagrams::sheets(&self.suite.cases, &runs))?;
+        }
+        pictures::save(&self.cases, &cells, store, listener)?;
+        Ok(report)
+    }
+}
+
+/// The judgments of a case, and that no agent passed through a wall.
+fn judgments(case: &Case, runs: &Runs) -> Result<Vec<Judgment>, LabError> {
+    let checks = case.checks.iter().map(|check| check.judged(runs));
+    let mut checks: Vec<Judgment> = checks.collect::<Result<_, _>>()?;
+    let own = runs
+        .own
+        .iter()
+        .filter(|(label, _)| case.runs().any(|run| run == *label));
+    let through = own.filter_map(|(_, run)| run.metric("agents_through_walls"));
+    if let Some(sum) = through.reduce(|sum, one| sum + one) {
+        checks.push(Judgment {
+            quantity: THROUGH_WALLS.to_owned(),
+            value: Some(sum),
+            expected: Expected::Between([0.0; 2]),
+            run: None,
+        });
+    }
+    Ok(checks)
+}
+
+/// One finding with the means over the seeds for each case and profile; a value that one seed lacks is missing.
+fn means(findings: Vec<Finding>) -> Vec<Finding> {
+    let mut means: Vec<(Finding, f64)> = Vec::new();
+    for one in findings {
+        let is_same = |(of, _): &&mut (Finding, f64)| {
+            of.case.name == one.case.name && of.profile == one.profile
+        };
+        let Some((mean, count)) = means.iter_mut().find(is_same) else {
+            means.push((Finding { seed: None, ..one }, 1.0));
+            continue;
+        };
+        *count += 1.0;
+        for (mean, own) in mean.checks.iter_mut().zip(&one.checks) {
+            let values = mean.value.zip(own.value);
+            mean.value = values.map(|(mean, own)| mean + (own - mean) / *count);
+        }
+    }
+    means.into_iter().map(|(mean, _)| mean).collect()
+}

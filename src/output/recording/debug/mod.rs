@@ -1,0 +1,108 @@
+//! Debug agents: some agents with the full breakdown of their forces, frame by frame.
+
+pub mod arrows;
+pub mod focus;
+pub mod follow;
+pub mod layers;
+pub mod moment;
+
+use super::draw::{Point, xy};
+use crate::engine::breakdown::Breakdown;
+use crate::engine::geometry::HiddenRegion;
+use crate::engine::math::Vector;
+use crate::engine::profile::Term;
+use crate::engine::scene::Region;
+use crate::engine::simulation::Simulation;
+
+/// Number of segments of an arc in the outline of a hidden region.
+const ARC_STEPS: usize = 24;
+
+/// Selects the debug agents.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DebugAgents {
+    /// The agents with these ids, while they are present.
+    Ids(Vec<u32>),
+    /// The agents inside a rectangle, selected anew in each frame, and the one that is followed.
+    Region(Region),
+    /// All agents: about 1.5 kB per agent and frame.
+    All,
+    /// No agents.
+    None,
+}
+
+impl DebugAgents {
+    /// Whether agent `i` of the current frame is a debug agent.
+    pub(in crate::output::recording) fn includes(&self, simulation: &Simulation, i: usize) -> bool {
+        let agents = simulation.frame().agents;
+        if !agents.is_present(i) {
+            return false;
+        }
+        match self {
+            Self::Ids(ids) => ids.contains(&agents.id[i]),
+            Self::Region(region) => region.contains(agents.position[i]),
+            Self::All => true,
+            Self::None => false,
+        }
+    }
+
+    /// The breakdowns of the debug agents in the current frame, and of the agents `also` that are present, in the order
+    /// of their ids; empty if the frame has no densities.
+    pub(in crate::output::recording) fn open(
+        &self,
+        simulation: &Simulation,
+        also: &[Option<u32>],
+    ) -> Vec<Open> {
+        let agents = simulation.frame().agents;
+        let also = also.iter().flatten();
+        let mut chosen: Vec<usize> = match self {
+            Self::None => Vec::new(),
+            // A search for each is faster than a test of every agent.
+            Self::Ids(ids) => ids.iter().filter_map(|&id| agents.index_of(id)).collect(),
+            Self::Region(_) | Self::All => {
+                let own = (0..agents.len()).filter(|&i| self.includes(simulation, i));
+                own.chain(also.filter_map(|&id| agents.index_of(id)))
+                    .collect()
+            }
+        };
+        chosen.sort_unstable_by_key(|&i| agents.id[i]);
+        chosen.dedup();
+        let chosen = chosen.into_iter();
+        chosen.filter_map(|i| Open::of(simulation, i)).collect()
+    }
+}
+
+/// An agent with its breakdown.
+pub struct Open {
+    pub breakdown: Breakdown,
+    pub position: Vector,
+    pub support_radius: f64,
+    /// The outlines of P_k, in the order of the breakdown's walls.
+    pub hidden: Vec<Vec<Point>>,
+}
+
+impl Open {
+    fn of(simulation: &Simulation, i: usize) -> Option<Self> {
+        let breakdown = Breakdown::of(simulation, i)?;
+        let frame = simulation.frame();
+        let position = frame.agents.position[i];
+        let support_radius = simulation.blend(i).sph.support_radius;
+        let regions = breakdown.walls.iter().filter_map(|term| {
+            HiddenRegion::behind(frame.walls.wall(term.wall), position, support_radius)
+        });
+        let outline = |region: HiddenRegion| region.outline(position, ARC_STEPS);
+        let hidden = regions.map(|region| outline(region).into_iter().map(xy).collect());
+        Some(Self {
+            hidden: hidden.collect(),
+            breakdown,
+            position,
+            support_radius,
+        })
+    }
+
+    /// The weighted sum of one term over the active profiles.
+    pub fn force(&self, term: Term) -> Vector {
+        let shares = self.breakdown.profiles.iter();
+        let terms = shares.filter_map(|share| Some(share.accelerations.get(term)? * share.weight));
+        terms.sum()
+    }
+}

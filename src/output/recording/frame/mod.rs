@@ -1,0 +1,102 @@
+//! A frame: a copy of it, so that another thread can write it, and what is written of it.
+
+pub mod crowd;
+pub mod events;
+pub mod stats;
+pub mod wall_forces;
+
+use rerun::{EntityPath, RecordingStream};
+
+use super::debug::{DebugAgents, Open};
+use super::draw::{Point, xy};
+use crate::engine::math::Vector;
+use crate::engine::simulation::Simulation;
+use crate::output::colors::Rgb;
+use crate::output::scenery::stage_color;
+use events::Line;
+use wall_forces::Part;
+
+/// The timelines.
+pub const FRAME: &str = "frame";
+pub const SIM_TIME: &str = "sim_time";
+
+/// A copy of one frame in single precision, with agents in the simulation's order.
+#[derive(Default)]
+pub struct Snapshot {
+    pub frame: i64,
+    pub time: f64,
+    /// `None` for measured data.
+    pub ms_per_frame: Option<f64>,
+    pub ids: Vec<u32>,
+    pub positions: Vec<Point>,
+    /// NaN if unknown.
+    pub velocities: Vec<Point>,
+    pub radii: Vec<f32>,
+    /// Empty if the masses are unknown.
+    pub masses: Vec<f32>,
+    /// Empty in a frame without densities, like the next two.
+    pub densities: Vec<f32>,
+    /// Also empty for measured data, like the next.
+    pub rest_densities: Vec<f32>,
+    pub pressures: Vec<f32>,
+    /// Colors by the stage of the journey; empty in scenes without journeys.
+    pub stages: Vec<Rgb>,
+    /// The values of the time series of places.
+    pub places: Vec<(EntityPath, f64)>,
+    /// Counted arrivals so far; `None` for measured data.
+    pub evacuated: Option<usize>,
+    /// The number of agents that wait at each entrance.
+    pub waiting: Vec<u32>,
+    /// The log of events since the last snapshot.
+    pub events: Vec<Line>,
+    /// The parts of walls with a force on them; `None` if they are not colored.
+    pub wall_forces: Option<Vec<Part>>,
+    /// The debug agents.
+    pub open: Vec<Open>,
+    /// The places of the followed agents among the debug agents; `None` for absent ones.
+    pub followed: Vec<Option<usize>>,
+}
+
+impl Snapshot {
+    /// The crowd of the current frame, with the debug agents and the followed ones.
+    pub fn of(simulation: &Simulation, debug: &DebugAgents, followed: &[Option<u32>]) -> Self {
+        let frame = simulation.frame();
+        let (agents, fields) = (frame.agents, frame.fields);
+        let present: Vec<usize> = agents.present().collect();
+        let vectors = |values: &[Vector]| present.iter().map(|&i| xy(values[i])).collect();
+        // Fields without values are empty.
+        let number = |values: &[f64], i: usize| values.get(i).map(|&x| x as f32);
+        let numbers = |values: &[f64]| present.iter().filter_map(|&i| number(values, i)).collect();
+        let trips = &agents.trip;
+        let stages = present.iter().copied().filter(|_| !trips.is_empty());
+        let stages = stages.map(|i| stage_color(trips.get(i).and_then(Option::as_ref)));
+        let open = debug.open(simulation, followed);
+        let place = |id: u32| {
+            open.binary_search_by_key(&id, |agent| agent.breakdown.id)
+                .ok()
+        };
+        Self {
+            followed: followed.iter().map(|id| id.and_then(place)).collect(),
+            frame: frame.clock.frame().cast_signed(),
+            time: frame.clock.time(),
+            ids: present.iter().map(|&i| agents.id[i]).collect(),
+            positions: vectors(&agents.position),
+            velocities: vectors(&agents.velocity),
+            radii: numbers(&agents.radius),
+            masses: numbers(&agents.mass),
+            densities: numbers(&fields.density),
+            rest_densities: numbers(&fields.rest_density),
+            pressures: numbers(&fields.pressure),
+            stages: stages.collect(),
+            places: stats::of_places(simulation),
+            open,
+            waiting: simulation.backlogs().map(|one| one.waiting).collect(),
+            ..Self::default()
+        }
+    }
+}
+
+pub fn set_time(stream: &RecordingStream, frame: i64, time: f64) {
+    stream.set_time_sequence(FRAME, frame);
+    stream.set_duration_secs(SIM_TIME, time);
+}

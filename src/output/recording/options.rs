@@ -1,0 +1,45 @@
+//! What a recording is to show.
+
+use super::debug::DebugAgents;
+use crate::engine::math::Vector;
+use crate::engine::scene::Region;
+use crate::scenario::floor_plan::Label;
+
+/// The texts and views of a recording, in addition to the simulation itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordingOptions {
+    /// Its identity: the viewer merges recordings with the same one.
+    pub id: String,
+    /// Its subject, for example the scenario's name: the viewer keeps one layout for all recordings with the same name.
+    /// Not empty.
+    pub application: String,
+    /// Its title in the viewer, for example the scenario's name and the settings that differ from its file.
+    pub title: String,
+    /// A one-line description; may be empty.
+    pub description: String,
+    /// The scenario as text, in Markdown.
+    pub document: String,
+    /// The part of the plane that the crowd views show.
+    pub view: Region,
+    /// The densities with the first and the last color, P/m².
+    pub density_range: [f64; 2],
+    /// The speeds with the first and the last color, m/s.
+    pub speed_range: [f64; 2],
+    /// The time that the viewer shows first, seconds; `None`: the time of the highest density. At a measurement: the
+    /// beginning.
+    pub opens_at: Option<f64>,
+    /// The time of the first frame, seconds.
+    pub begins_at: f64,
+    /// The end of the run as far as it is known; the loop that plays first does not go beyond it.
+    pub ends_at: f64,
+    /// The debug agents.
+    pub debug: DebugAgents,
+    /// The mass of an average person, kg, if walls are colored by the force on them.
+    pub body_mass: Option<f64>,
+    /// The outlines of what is measured, meters, each with its name.
+    pub measured: Vec<(String, Vec<Vector>)>,
+    /// Texts.
+    pub labels: Vec<Label>,
+    /// Upper bound on the agents that enter: with many, fewer arrivals are in the log of events.
+    pub entering: u64,
+}

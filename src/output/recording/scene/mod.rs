@@ -1,0 +1,87 @@
+//! The static data of a scene, logged once before the first frame.
+
+pub mod bars;
+pub mod markers;
+pub mod names;
+pub mod obstacles;
+pub mod places;
+pub mod ways;
+
+use rerun::{Points2D, RecordingStream};
+
+use super::draw::{color, log_lines, px, xy, y_up};
+use super::error::Cause;
+use super::options::RecordingOptions;
+use crate::engine::agents::Agents;
+use crate::engine::geometry::Polygon;
+use crate::engine::math::bounds;
+use crate::engine::period::Axis;
+use crate::engine::scene::{Region, Scene};
+use crate::engine::simulation::Simulation;
+use crate::output::colors::Rgb;
+use crate::output::labels;
+use crate::output::scenery::{self, closed};
+use names::Names;
+
+const WALL: Rgb = [214, 214, 222];
+const GOAL: Rgb = [95, 211, 120];
+
+/// Logs everything that stays constant in a run.
+pub fn log(
+    stream: &RecordingStream,
+    simulation: &Simulation,
+    options: &RecordingOptions,
+) -> Result<(), Cause> {
+    let (scene, agents) = (simulation.scene(), simulation.frame().agents);
+    let mut names = Names::of_scene(&options.view, scene);
+    places::log(stream, scene, &mut names)?;
+    log_walls(stream, scene.walls.obstacles())?;
+    log_period(stream, scene, agents)?;
+    log_goals(stream, (scene, agents), &mut names)?;
+    ways::log(stream, scene)?;
+    markers::log(stream, scene, options, &mut names)?;
+    names.log(stream)
+}
+
+/// Logs the direction of y, walls and obstacles.
+pub fn log_walls(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Cause> {
+    stream.log_static("world", &y_up())?;
+    let rings = obstacles.iter().flat_map(Polygon::rings);
+    log_lines(stream, "walls", (WALL, 0.75, 5.0), rings.map(closed))?;
+    obstacles::log(stream, obstacles)
+}
+
+/// Logs a line at each end of the period.
+fn log_period(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
+    let Some(period) = &scene.period else {
+        return Ok(());
+    };
+    let corners = scene.walls.iter().map(|wall| wall.start);
+    let corners = bounds(corners.chain(agents.position.iter().copied())).unwrap_or_default();
+    let [min, max] = period.clipped(corners);
+    let [a, b, c, d] = Region { min, max }.corners();
+    let ends = match period.axis {
+        Axis::X => [vec![a, d], vec![b, c]],
+        Axis::Y => [vec![a, b], vec![d, c]],
+    };
+    log_lines(stream, "period", (GOAL, 0.75, 6.0), ends)
+}
+
+fn log_goals(
+    stream: &RecordingStream,
+    (scene, agents): (&Scene, &Agents),
+    names: &mut Names,
+) -> Result<(), Cause> {
+    let goals = scenery::goals(scene, agents);
+    if goals.is_empty() {
+        return Ok(());
+    }
+    for (text, spots) in labels::of_goals(scene, &goals) {
+        names.add("goals/names", goals.len(), &text, (GOAL, &spots));
+    }
+    let points = Points2D::new(goals.iter().map(|(p, _)| xy(*p)))
+        .with_radii(px(5.0))
+        .with_colors([color(GOAL)])
+        .with_draw_order(6.0);
+    Ok(stream.log_static("world/geometry/goals", &points)?)
+}

@@ -1,0 +1,135 @@
+//! No force may make the automatic time step too long.
+
+use std::sync::Arc;
+
+use crate::common::{blend, blend_with, person, run, scene, vector};
+use sandbox::analysis::stability::time_step;
+use sandbox::engine::clock::Clock;
+use sandbox::engine::forces::own::Force;
+use sandbox::engine::frame::Frame;
+use sandbox::engine::math::Vector;
+use sandbox::engine::profile::Term;
+use sandbox::engine::scene::{Integrator, Scene};
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::{NAMES, Parameters, WalkingLawKind};
+
+/// Pulls every agent to the x axis and brakes it.
+#[derive(Debug, Clone, Copy)]
+struct Rail {
+    stiffness: f64,
+    friction: f64,
+}
+
+impl Force for Rail {
+    fn name(&self) -> &str {
+        "rail"
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    fn friction(&self) -> f64 {
+        self.friction
+    }
+
+    fn acceleration(&self, frame: &Frame, i: usize) -> Vector {
+        let pull = vector(0.0, -self.stiffness * frame.agents.position[i].y);
+        pull - frame.agents.velocity[i] * self.friction
+    }
+}
+
+/// One agent, so near to the axis that its speed is not clamped.
+fn on_rail(rail: Rail, integrator: Integrator) -> Scene {
+    let mut scene = scene(Vec::new(), blend("sph"));
+    scene.integrator = integrator;
+    scene.agents = vec![person(vector(0.0, 1e-4), vector(50.0, 0.0))];
+    scene.own_forces.push(Arc::new(rail));
+    scene
+}
+
+/// The change of the velocity in a frame after 10 s with this step, m/s.
+fn shaking(mut scene: Scene, step: f64) -> f64 {
+    scene.clock = Clock::new(step, 1);
+    let mut simulation = Simulation::new(scene).unwrap();
+    run(&mut simulation, (10.0 / step) as u64);
+    let before = simulation.frame().agents.velocity[0];
+    run(&mut simulation, 1);
+    (simulation.frame().agents.velocity[0] - before).norm()
+}
+
+#[test]
+fn an_agent_on_a_stiff_rail_walks_steadily_with_the_automatic_step_and_shakes_with_twice_that() {
+    for [stiffness, friction] in [[1e4, 0.0], [1e6, 0.0], [0.0, 100.0], [1e4, 100.0]] {
+        let rail = Rail {
+            stiffness,
+            friction,
+        };
+        for integrator in [Integrator::SemiImplicit, Integrator::VelocityVerlet] {
+            let scene = on_rail(rail, integrator);
+            let step = time_step(&scene).unwrap();
+            let [short, long] = [step, 2.0 * step].map(|step| shaking(scene.clone(), step));
+            assert!(short < 0.01, "{rail:?}, {integrator:?}, {step} s: {short}");
+            assert!(long > 1.0, "{rail:?}, {integrator:?}, {step} s: {long}");
+        }
+    }
+}
+
+/// Stiff parameters of a term; none if no parameter changes how fast it acts.
+fn stiff(term: Term) -> Vec<Parameters> {
+    let mut all = Parameters::default();
+    let [much, more] = [Some(1e3), Some(1e6)];
+    match term {
+        Term::Goal => all.goal_scale = much,
+        Term::Walking => return WALKING_LAWS.map(walking).to_vec(),
+        Term::SocialAgents => all.agent_strength = more,
+        Term::SocialWalls => all.wall_strength = more,
+        Term::Rvo => return Vec::new(),
+        Term::PressureAgents | Term::PressureWalls => all.gas_constant = more,
+        Term::Viscosity => all.viscosity = much,
+        Term::ContactAgents => all.agent_stiffness = more,
+        Term::ContactWalls => all.wall_stiffness = more,
+    }
+    vec![all]
+}
+
+const WALKING_LAWS: [WalkingLawKind; 3] = [
+    WalkingLawKind::Headway,
+    WalkingLawKind::DensityAhead,
+    WalkingLawKind::Drag,
+];
+
+/// A walking law that brakes much sooner than by default.
+fn walking(law: WalkingLawKind) -> Parameters {
+    Parameters {
+        walking_law: Some(law),
+        headway_time: Some(0.01),
+        jam_density: Some(0.01),
+        drag_per_density: Some(1e3),
+        ..Parameters::default()
+    }
+}
+
+#[test]
+fn every_stiff_force_shortens_the_automatic_step() {
+    let step = |name: &str, parameters: &Parameters| {
+        let mut scene = scene(Vec::new(), blend_with(name, parameters));
+        scene.agents = vec![person(Vector::zeros(), vector(9.0, 0.0))];
+        time_step(&scene).unwrap()
+    };
+    for term in Term::all() {
+        let mut found = 0;
+        for parameters in stiff(term) {
+            for name in NAMES {
+                let blend = blend_with(name, &parameters);
+                if blend.steps().iter().any(|step| step.profile.has(term)) {
+                    let [soft, stiff] = [&Parameters::default(), &parameters];
+                    let (soft, stiff) = (step(name, soft), step(name, stiff));
+                    assert!(stiff < soft, "{term:?}, {name}: {stiff} s, {soft} s");
+                    found += 1;
+                }
+            }
+        }
+        assert!(found > 0 || term == Term::Rvo, "{term:?}");
+    }
+}

@@ -1,0 +1,210 @@
+//! Suites: the cases of the built-in ones and their runs, and suites of users.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use proptest::prelude::*;
+use proptest::sample::Index;
+use sandbox::lab::suite::{Case, Chosen, Suite};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use crate::common::bounded;
+use crate::common::documents::{count, invalid_value, replace};
+use crate::common::program::{run_in, stderr};
+
+/// People who come one by one and walk toward smaller y; lengths in `unit` meters.
+fn people(head: &str, unit: f64) -> String {
+    let mut text = head.to_owned();
+    for person in 0..5 {
+        for frame in 0..=60 {
+            let y = (3.0 - f64::from(frame) / 25.0) / unit;
+            text += &format!("{person} {} {} {y} 0\n", 25 * person + frame, 0.3 / unit);
+        }
+    }
+    text
+}
+
+#[test]
+fn checks_of_the_built_in_suites_name_all_runs_and_no_unknown_quantities() {
+    let data = tempfile::tempdir().unwrap();
+    let bottleneck = people("# framerate: 25 fps\n# id frame x/m y/m z/m\n", 1.0);
+    fs::write(data.path().join("040_c_56_h-.txt"), bottleneck).unwrap();
+    let corridor = people("# id frame x y z\n", 0.01);
+    fs::write(data.path().join("uo-180-180-180.txt"), corridor).unwrap();
+    for (name, count) in [("verification", 26), ("validation", 11)] {
+        let suite = Suite::built_in(name).unwrap();
+        assert_eq!(suite.cases.len(), count, "{name}");
+        let chosen = Chosen {
+            cases: suite.cases.iter().collect(),
+            profiles: &[],
+            seeds: None,
+            data: Some(data.path()),
+        };
+        let planned = suite.planned(&chosen).map_err(|error| error.to_string());
+        let planned = planned.unwrap();
+        assert_eq!(planned.skipped.len(), 0);
+        let cells = planned.study.cells.iter();
+        let known: BTreeSet<&str> = cells.filter_map(|cell| cell.label()).collect();
+        let used: BTreeSet<&str> = suite.cases.iter().flat_map(Case::runs).collect();
+        assert_eq!(used, known, "{name}");
+        for case in &suite.cases {
+            assert!(case.picture.is_some(), "{}", case.name);
+        }
+    }
+}
+
+/// The files of the example in docs/validation.md: a scenario and a suite.
+fn example() -> TempDir {
+    let document = include_str!("../docs/validation.md");
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["room.json", "my_suite.json"] {
+        let (_, listing) = document.split_once(&format!("`{name}`, ")).unwrap();
+        let listing = listing.split("```").nth(1).unwrap();
+        let listing = listing.strip_prefix("json\n").unwrap();
+        fs::write(folder.path().join(name), listing).unwrap();
+    }
+    folder
+}
+
+/// The suite of the example, with another value at `pointer`.
+fn changed(folder: &Path, pointer: &str, value: Value) {
+    let path = folder.join("my_suite.json");
+    let mut suite: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+    match suite.pointer_mut(pointer) {
+        Some(old) => *old = value,
+        None => {
+            let (parent, key) = pointer.rsplit_once('/').unwrap();
+            suite.pointer_mut(parent).unwrap()[key] = value;
+        }
+    }
+    fs::write(path, suite.to_string()).unwrap();
+}
+
+#[test]
+fn the_suite_of_the_documentation_passes() {
+    let folder = example();
+    for (command, seeds) in [("validate", ""), ("verify", "1")] {
+        let output = run_in(folder.path(), &[command, "my_suite.json", "--out", command]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let printed = String::from_utf8(output.stdout).unwrap();
+        assert!(
+            printed.starts_with("Passed by sph: 1 of 1 cases")
+                && printed.contains("12 people leave by a door of 1 m or 2 m (our drill of May)"),
+            "{printed}"
+        );
+        let out = folder.path().join(command);
+        let csv = fs::read_to_string(out.join("my_suite.csv")).unwrap();
+        let row = format!("room,sf->sph,{seeds},people out,12,12,12,true");
+        assert!(csv.lines().any(|line| line == row), "{csv}");
+        assert!(out.join("room.png").exists() && out.join("my_suite.json").exists());
+    }
+}
+
+#[test]
+fn a_suite_with_a_passing_and_a_failing_check_fails_and_says_which() {
+    let folder = example();
+    let checks = json!([
+        {"name": "people out", "quantity": "finished", "of": "door 1 m", "expected": {"between": [12, 12]}},
+        {"name": "people left", "quantity": "remaining", "of": "door 2 m", "expected": {"between": [1, null]}}
+    ]);
+    changed(folder.path(), "/cases/0/checks", checks);
+    let typed = ["validate", "my_suite.json", "room", "--profile", "sph"];
+    let output = run_in(folder.path(), &typed);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let said = stderr(&output);
+    let said = said.lines().last().unwrap();
+    assert_eq!(
+        said,
+        "error: case room, sph: people left is 0, expected at least 1"
+    );
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(printed.contains("Passed by sph: 0 of 1 cases"), "{printed}");
+    assert!(printed.contains("| 12 | 12 |") && printed.contains("| at least 1 | **0** |"));
+
+    changed(
+        folder.path(),
+        "/cases/0/known_misses",
+        json!({"sph": "nobody is locked in"}),
+    );
+    let output = run_in(folder.path(), &typed);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        printed.contains("- **room**, sph: nobody is locked in."),
+        "{printed}"
+    );
+}
+
+#[test]
+fn a_suite_without_a_list_needs_no_labels_and_without_profiles_has_the_scenarios() {
+    let folder = example();
+    let suite = json!({
+        "scenario": "room.json",
+        "cases": [{"name": "out", "about": "all leave", "checks": [
+            {"name": "people out", "quantity": "finished", "expected": {"between": [13, null]}}
+        ]}]
+    });
+    changed(folder.path(), "", suite);
+    let output = run_in(folder.path(), &["verify", "my_suite.json", "--only", "out"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(
+        said.ends_with("people out is 12, expected at least 13\n"),
+        "{said}"
+    );
+}
+
+#[test]
+fn broken_suites_are_refused_by_place_with_what_would_be_right() {
+    let broken: Vec<Value> = serde_json::from_str(include_str!("data/broken_suites.json")).unwrap();
+    assert!(broken.len() >= 25);
+    for case in &broken {
+        let folder = example();
+        for (pointer, value) in case["change"].as_object().unwrap() {
+            changed(folder.path(), pointer, value.clone());
+        }
+        let output = run_in(folder.path(), &["validate", "my_suite.json"]);
+        let expected = format!(
+            "error: my_suite.json: {}",
+            case["message"].as_str().unwrap()
+        );
+        assert_eq!(stderr(&output).trim_end(), expected, "{case}");
+        assert_eq!(output.status.code(), Some(2), "{case}");
+        assert!(!folder.path().join("validation").exists());
+    }
+}
+
+#[test]
+fn a_suite_with_changed_values_is_planned_or_refused() {
+    let folder = example();
+    let path = folder.path().join("my_suite.json");
+    let suite: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+    let planned = |document: &Value| {
+        fs::write(&path, document.to_string()).unwrap();
+        let suite = Suite::read(&path).map_err(|error| error.to_string())?;
+        let chosen = Chosen {
+            cases: suite.cases.iter().collect(),
+            profiles: &[],
+            seeds: None,
+            data: None,
+        };
+        let planned = suite.planned(&chosen);
+        planned.map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(planned(&suite), Ok(()));
+    let changes = || prop::collection::vec((any::<Index>(), invalid_value()), 1..3);
+    bounded::cases(500, changes, |changes| {
+        let mut document = suite.clone();
+        for (at, by) in changes {
+            let mut k = at.index(count(&document));
+            replace(&mut document, &mut k, &by);
+        }
+        if let Err(said) = planned(&document) {
+            let is_short = said.len() < 3000 && !said.contains(char::is_control);
+            assert!(said.contains("my_suite.json: ") && is_short, "{said:?}");
+        }
+        1 << 24
+    });
+}
