@@ -57,6 +57,22 @@ fn settings_override_the_parameters_of_a_calibrated_profile() {
 }
 
 #[test]
+fn a_profile_based_on_a_calibrated_one_has_its_parameters() {
+    for profile in calibrated::all() {
+        let blend = |profile: Value| {
+            let document =
+                json!({"profile": profile, "goal": [9, 9], "agents": [{"position": [1, 1]}]});
+            parsed(&document).scene.groups[0].blend.clone()
+        };
+        let whole = blend(json!(profile.name));
+        assert_eq!(blend(json!({"base": profile.name})), whole);
+        let changed = blend(json!({"base": profile.name, "parameters": {"rest_density_max": 4.5}}));
+        assert_eq!(changed.sph.rest_density_max, 4.5);
+        assert_eq!(changed.steps(), whole.steps());
+    }
+}
+
+#[test]
 fn a_blend_takes_the_rest_density_of_the_calibrated_profile_in_it() {
     for profile in calibrated::all() {
         let blend = json!({"blend": [

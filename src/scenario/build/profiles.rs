@@ -41,10 +41,13 @@ fn custom_blend(custom: &CustomProfile, overriding: &Parameters) -> Result<Blend
         }
         return Ok(blend);
     }
-    Ok(Blend::single(
-        custom_profile(custom, &parameters)?,
-        parameters.sph(),
-    ))
+    let profile = custom_profile(custom, &parameters)?;
+    // A calibrated base has parameters of its own.
+    let sph = match &custom.base {
+        Some(ProfileName(base)) => catalog::resolved(base, &parameters).1.sph(),
+        None => parameters.sph(),
+    };
+    Ok(Blend::single(profile, sph))
 }
 
 /// A profile that is not a blend.
