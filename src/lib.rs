@@ -42,8 +42,9 @@
 //! | Π, {(Π, ρ)} | [`Profile`](engine::profile::Profile), [`Blend`](engine::profile::Blend) | | P_k, a(P_k) | [`HiddenRegion`](engine::geometry::HiddenRegion), `hidden_area` |
 //! | w | `collision_weight` | | v^pref, s_pref, s_max | `preferred_velocity`, `preferred_speed`, `max_speed` |
 //!
-//! The code has seven wings, one module each. A wing uses only the wings above it in this list, and a module uses only
-//! the modules above it in its wing (except in `scenario` and `cli`); `tests/architecture.rs` checks both.
+//! The code has seven wings, one module each: engine, analysis, scenario, runs, output, lab and cli. A wing uses only
+//! the wings before it in this list, and a module uses only the modules above it in its wing; the compiler and
+//! `tests/architecture.rs` check this.
 //! `docs/architecture.md` describes the loop, the path from a scenario file to a recording, and recipes for extensions.
 
 #![warn(missing_docs, clippy::unwrap_used)]

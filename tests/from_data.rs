@@ -393,24 +393,3 @@ fn a_unit_or_frame_rate_that_is_not_the_files_own_is_noted() {
     let found = notes(from("m", 8.0));
     assert_eq!(found, ["from: `fps` 8 is taken, not the file's own 16"]);
 }
-
-#[test]
-fn people_of_data_wait_for_their_premovement_time() {
-    let document = json!({
-        "goal": [50, 0], "profile": "sph",
-        "from": {"people": [[1, 0, 0, 0, 0, 0], [2, 1, 0, 3, 0, 0]], "premovement_secs": 1.5},
-    });
-    let scenario = Scenario::parse(&document.to_string(), "f", &[]).unwrap();
-    let mut simulation = Simulation::new(scenario.scene).unwrap();
-    // The first may walk from 1.5 s on, the second, who enters after 1 s, from 2.5 s on. A frame is 0.02 s.
-    for (frame, expected) in [
-        (70, [false, false]),
-        (115, [true, false]),
-        (170, [true, true]),
-    ] {
-        go_to(&mut simulation, frame);
-        let velocity = &simulation.frame().agents.velocity;
-        let walks = [0, 1].map(|k| velocity[k].x > 0.1);
-        assert_eq!(walks, expected, "{frame}");
-    }
-}
