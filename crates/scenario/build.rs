@@ -8,19 +8,19 @@ use std::{env, fs, io};
 use sha2::{Digest, Sha256};
 
 /// The wings on which the result of a run depends.
-const WINGS: [&str; 4] = ["engine", "analysis", "scenario", "runs"];
+const WINGS: [&str; 4] = ["src/engine", "src/analysis", "src/scenario", "src/runs"];
 
 /// The versions of all dependencies.
-const LOCK: &str = "../Cargo.lock";
+const LOCK: &str = "Cargo.lock";
 
 fn main() -> io::Result<()> {
-    env::set_current_dir("..")?; // the folder of the wings
+    env::set_current_dir("../..")?; // the root of the project
     let mut files = Vec::new();
     for wing in WINGS {
-        println!("cargo::rerun-if-changed=../{wing}");
+        println!("cargo::rerun-if-changed=../../{wing}");
         collect(Path::new(wing), &mut files)?;
     }
-    println!("cargo::rerun-if-changed=../{LOCK}");
+    println!("cargo::rerun-if-changed=../../{LOCK}");
     // The files that are built into the program: a new one must be found.
     println!("cargo::rerun-if-changed=../../scenarios");
     files.sort();

@@ -4,8 +4,8 @@
 
 pub use sandbox_engine::{analysis, engine};
 
-#[path = "mod.rs"]
+#[path = "../../src/scenario/mod.rs"]
 pub mod scenario;
 
-#[path = "../runs/mod.rs"]
+#[path = "../../src/runs/mod.rs"]
 pub mod runs;

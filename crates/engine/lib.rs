@@ -2,8 +2,8 @@
 
 #![warn(missing_docs, clippy::unwrap_used)]
 
-#[path = "mod.rs"]
+#[path = "../../src/engine/mod.rs"]
 pub mod engine;
 
-#[path = "../analysis/mod.rs"]
+#[path = "../../src/analysis/mod.rs"]
 pub mod analysis;
