@@ -12,6 +12,8 @@ use sandbox::engine::profile::Term;
 use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::{NAMES, Parameters, WalkingLawKind};
+use sandbox::scenario::schema;
+use serde::Deserialize;
 
 /// Pulls every agent to the x axis and brakes it.
 #[derive(Debug, Clone, Copy)]
@@ -81,7 +83,7 @@ fn stiff(term: Term) -> Vec<Parameters> {
     let [much, more] = [Some(1e3), Some(1e6)];
     match term {
         Term::Goal => all.goal_scale = much,
-        Term::Walking => return WALKING_LAWS.map(walking).to_vec(),
+        Term::Walking => return laws().into_iter().map(walking).collect(),
         Term::SocialAgents => all.agent_strength = more,
         Term::SocialWalls => all.wall_strength = more,
         Term::Rvo => return Vec::new(),
@@ -93,21 +95,32 @@ fn stiff(term: Term) -> Vec<Parameters> {
     vec![all]
 }
 
-const WALKING_LAWS: [WalkingLawKind; 3] = [
-    WalkingLawKind::Headway,
-    WalkingLawKind::DensityAhead,
-    WalkingLawKind::Drag,
-];
+/// All walking laws: those that scenarios can name.
+fn laws() -> Vec<WalkingLawKind> {
+    let schema = schema();
+    let words = &schema["$defs"]["Parameters"]["properties"]["walking_law"]["enum"];
+    let laws = words.as_array().unwrap().iter();
+    let laws = laws.filter(|word| !word.is_null() && *word != "none");
+    let laws: Vec<_> = laws
+        .map(|word| WalkingLawKind::deserialize(word).unwrap())
+        .collect();
+    assert!(laws.len() > 2, "{words}");
+    laws
+}
 
 /// A walking law that brakes much sooner than by default.
 fn walking(law: WalkingLawKind) -> Parameters {
-    Parameters {
+    let mut all = Parameters {
         walking_law: Some(law),
-        headway_time: Some(0.01),
-        jam_density: Some(0.01),
-        drag_per_density: Some(1e3),
         ..Parameters::default()
+    };
+    match law {
+        WalkingLawKind::None => {}
+        WalkingLawKind::Headway => all.headway_time = Some(0.01),
+        WalkingLawKind::DensityAhead => all.jam_density = Some(0.01),
+        WalkingLawKind::Drag => all.drag_per_density = Some(1e3),
     }
+    all
 }
 
 #[test]

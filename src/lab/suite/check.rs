@@ -81,7 +81,7 @@ impl Case {
 }
 
 impl Check {
-    /// A check that any value passes of a measured quantity.
+    /// A check of a measured quantity that only reports it: every value passes.
     pub fn of_metric(name: &str) -> Self {
         Self {
             name: name.to_owned(),

@@ -11,7 +11,7 @@ use crate::runs::job::Listener;
 use crate::runs::parallel::side_by_side;
 use crate::runs::store::Store;
 
-/// Draws a run of each case at one moment, with the first profile and seed: `ID.png`.
+/// Draws a run of each case that asks for a picture, at one moment, with the first profile and seed: `NAME.png`.
 pub fn save(
     cases: &[&Case],
     cells: &[&Cell],

@@ -9,8 +9,8 @@ use crate::scenario::error::numbers::brief;
 use crate::scenario::error::{Problem, Under, in_plain_words};
 use crate::scenario::file::schema::{allows, resolved, root, ways, words_of};
 
-/// Rejects numbers out of range, empty names, lists that must not be empty, missing keys, and values of the wrong type
-/// that serde would accept (a list of values in place of an object) or would reject without naming their place.
+/// Rejects numbers out of range, empty names and lists, and missing keys. Also rejects wrong types that serde would
+/// accept (a list in place of an object) or would refuse without saying where.
 pub fn check(document: &Value) -> Result<(), Problem> {
     check_value(root(), document)
 }
@@ -112,8 +112,8 @@ fn check_type(schema: &Value, value: &Value) -> Result<(), Problem> {
     })
 }
 
-/// The schema itself or, if it has alternatives, the one that `value` is meant to match: the only one, else the first
-/// that it fits, else (for a list) the first that allows a list.
+/// The schema itself or, if it has alternatives, the one that `value` is meant for: the only one; else the first that
+/// fits; else, for a list, the first that allows lists.
 fn chosen(schema: &'static Value, value: &Value) -> Option<&'static Value> {
     let schema = resolved(schema);
     let Some(all) = ways(schema) else {

@@ -52,7 +52,8 @@ pub struct Agent {
 
 /// The keys that grids, crowds, sources, entrances and `from` have in common.
 ///
-/// Structs that flatten it cannot refuse unknown keys: the walk over the schema does (`file::range`).
+/// serde cannot refuse unknown keys in structs that flatten it: `file::range::check_names` does, where they have
+/// `#[schemars(deny_unknown_fields)]`.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct People {

@@ -25,8 +25,6 @@ pub struct CrowdPressure {
     pub(super) window: Window,
 }
 
-impl CrowdPressure {}
-
 impl Measure for CrowdPressure {
     /// With the time between two samples, seconds.
     type Seen = (Pressures, f64);

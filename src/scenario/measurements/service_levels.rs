@@ -24,8 +24,6 @@ pub struct ServiceLevels {
     pub(super) window: Window,
 }
 
-impl ServiceLevels {}
-
 impl Measure for ServiceLevels {
     type Seen = Levels;
 

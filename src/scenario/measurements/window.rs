@@ -46,7 +46,8 @@ pub fn walkable_area(region: Region, walls: &Walls) -> f64 {
 
 /// When a measurement samples the crowd.
 ///
-/// Structs that flatten it or [`Window`] cannot refuse unknown keys: the walk over the schema does (`file::range`).
+/// serde cannot refuse unknown keys in structs that flatten it or [`Window`]: `file::range::check_names` does, where
+/// they have `#[schemars(deny_unknown_fields)]`.
 #[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
 pub struct Samples {
     /// The start, seconds.
