@@ -98,13 +98,11 @@ fn stiff(term: Term) -> Vec<Parameters> {
 /// All walking laws: those that scenarios can name.
 fn laws() -> Vec<WalkingLawKind> {
     let schema = schema();
-    let words = &schema["$defs"]["Parameters"]["properties"]["walking_law"]["enum"];
-    let laws = words.as_array().unwrap().iter();
-    let laws = laws.filter(|word| !word.is_null() && *word != "none");
-    let laws: Vec<_> = laws
-        .map(|word| WalkingLawKind::deserialize(word).unwrap())
-        .collect();
-    assert!(laws.len() > 2, "{words}");
+    let kinds = schema["$defs"]["WalkingLawKind"]["oneOf"].as_array();
+    let words = kinds.unwrap().iter().map(|kind| &kind["const"]);
+    let laws = words.map(|word| WalkingLawKind::deserialize(word).unwrap());
+    let laws: Vec<_> = laws.filter(|law| *law != WalkingLawKind::None).collect();
+    assert!(laws.len() > 2, "{laws:?}");
     laws
 }
 
