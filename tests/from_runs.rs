@@ -150,7 +150,7 @@ fn people_of_data_wait_for_their_premovement_time() {
     });
     let scenario = Scenario::parse(&document.to_string(), "f", &[]).unwrap();
     let mut simulation = Simulation::new(scenario.scene).unwrap();
-    // The first may walk from 1.5 s on, the second, who enters after 1 s, from 2.5 s on. A frame is 0.02 s.
+    // Agent 1 may walk from 1.5 s on. Agent 2 enters at 1 s and may walk from 2.5 s on. A frame is 0.02 s.
     for (frame, expected) in [
         (70, [false, false]),
         (115, [true, false]),

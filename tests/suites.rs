@@ -14,7 +14,7 @@ use crate::common::bounded;
 use crate::common::documents::{count, invalid_value, replace};
 use crate::common::program::{run_in, stderr};
 
-/// People who come one by one and walk toward smaller y; lengths in `unit` meters.
+/// People who enter one by one and walk toward smaller y. Lengths are in units of `unit` meters.
 fn people(head: &str, unit: f64) -> String {
     let mut text = head.to_owned();
     for person in 0..5 {
@@ -126,13 +126,13 @@ fn a_suite_with_a_passing_and_a_failing_check_fails_and_says_which() {
     changed(
         folder.path(),
         "/cases/0/known_misses",
-        json!({"sph": "nobody is locked in"}),
+        json!({"sph": "no agent is locked in"}),
     );
     let output = run_in(folder.path(), &typed);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let printed = String::from_utf8(output.stdout).unwrap();
     assert!(
-        printed.contains("- **room**, sph: nobody is locked in."),
+        printed.contains("- **room**, sph: no agent is locked in."),
         "{printed}"
     );
 }

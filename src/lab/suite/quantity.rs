@@ -108,7 +108,7 @@ pub enum Function {
 }
 
 impl Function {
-    /// Why it cannot take so many values.
+    /// The reason if it does not take this number of values.
     pub(super) fn refuses(self, count: usize) -> Option<&'static str> {
         match self {
             Self::Mean | Self::Sum => None,
