@@ -16,6 +16,7 @@ mod colors;
 mod command_lines;
 mod differences;
 mod draw;
+mod estimate;
 mod from_runs;
 mod interrupts;
 mod killed;

@@ -1,8 +1,13 @@
 //! Statistics: mean and standard deviation, the standard error and the confidence interval of a mean, ranges of
 //! repeated measurements, straight lines, and the jackknife.
 
+use std::fmt;
+
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize, Serializer};
-use statrs::distribution::{ContinuousCDF, StudentsT, Uniform};
+use statrs::distribution::{Beta, ContinuousCDF, StudentsT, Uniform};
 use statrs::statistics::{Data, Max, Min, OrderStatistics};
 use statrs::stats_tests::NaNPolicy;
 use statrs::stats_tests::ks_test::{KSOneSampleAlternativeMethod, ks_onesample};
@@ -83,9 +88,53 @@ impl Serialize for MeanStd {
 /// 97.5 % quantile of Student's t with `count` − 1 degrees of freedom. `None` for fewer than two values, which have no
 /// sample standard deviation.
 pub fn student_95(count: usize) -> Option<f64> {
-    let degrees = count.checked_sub(1)?;
+    student(count.checked_sub(1)?, 0.95)
+}
+
+/// Half the width of an interval around 0 that holds Student's t with this probability. `None` without degrees of
+/// freedom.
+pub fn student(degrees: usize, probability: f64) -> Option<f64> {
     let distribution = StudentsT::new(0.0, 1.0, degrees as f64).ok()?;
-    Some(distribution.inverse_cdf(0.975))
+    Some(distribution.inverse_cdf(0.5 + 0.5 * probability))
+}
+
+/// A share of runs, with its 95 % confidence interval (Clopper and Pearson 1934).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Share {
+    /// The number of these runs.
+    pub count: usize,
+    /// The number of all runs.
+    pub of: usize,
+    /// The ends of the interval, between 0 and 1.
+    pub interval: [f64; 2],
+}
+
+impl Share {
+    /// The share `count` of `of`.
+    pub fn of(count: usize, of: usize) -> Self {
+        let [hits, misses] = [count as f64, of.saturating_sub(count) as f64];
+        let end = |a: f64, b: f64, at: f64, otherwise: f64| {
+            let beta = Beta::new(a, b).ok();
+            beta.map_or(otherwise, |beta| beta.inverse_cdf(at))
+        };
+        let low = end(hits, misses + 1.0, 0.025, 0.0);
+        let high = end(hits + 1.0, misses, 0.975, 1.0);
+        let interval = [low, high];
+        Self {
+            count,
+            of,
+            interval,
+        }
+    }
+}
+
+/// As `3.3 % (0.1 to 17.2 %)`.
+impl fmt::Display for Share {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [low, high] = self.interval.map(|end| 100.0 * end);
+        let part = 100.0 * self.count as f64 / self.of.max(1) as f64;
+        write!(f, "{part:.1} % ({low:.1} to {high:.1} %)")
+    }
 }
 
 /// The probability that as many uniform draws between 0 and 1 are as far from uniform as `shares` (Kolmogorov–Smirnov
@@ -207,6 +256,13 @@ impl Line {
             offset: Range::of(&offsets).median,
         })
     }
+}
+
+/// The numbers from 0 to `count` − 1 in random order.
+pub fn shuffled(count: usize, seed: u64) -> Vec<usize> {
+    let mut numbers: Vec<usize> = (0..count).collect();
+    numbers.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
+    numbers
 }
 
 /// The place of the highest point of the parabola through three values at −1, 0 and 1; 0 if the parabola has none.

@@ -8,11 +8,12 @@ use super::terminal::tell;
 use super::update::CaseOptions;
 use super::watch::Watch;
 use crate::lab::accuracy::{CHOICES, Plan, SCENES, Scene, accuracy, knobs};
+use crate::lab::estimate::{Pool, coverage};
 
 #[derive(Args)]
 pub struct AccuracyOptions {
     /// Scenes to measure [default: all]
-    #[arg(value_parser = PossibleValuesParser::new(scenes()))]
+    #[arg(value_parser = PossibleValuesParser::new(scenes().into_iter().chain([COVERAGE])))]
     pub scene: Vec<String>,
     /// Numerical choice to vary; may be repeated [default: all that matter in the scene]
     #[arg(long, value_name = "KNOB", value_parser = PossibleValuesParser::new(knobs()))]
@@ -40,7 +41,31 @@ pub fn scenes() -> Vec<&'static str> {
     SCENES.iter().map(|scene| scene.name).collect()
 }
 
+/// The name of the study of `sandbox estimate`, and of its table.
+const COVERAGE: &str = "coverage";
+
+/// How often the intervals of `sandbox estimate` hold the value.
+fn run_coverage(options: &AccuracyOptions) -> Result<(), Failure> {
+    if options.scene.len() > 1 || !options.knob.is_empty() {
+        let reason = "coverage is a study of its own: name no scene and no knob beside it";
+        return Err(Failure::Input(reason.to_owned()));
+    }
+    let pool = if options.quick {
+        Pool::QUICK
+    } else {
+        Pool::WHOLE
+    };
+    let store = options.cases.store(&[COVERAGE])?;
+    let found = coverage(pool, &store, &Watch::new())?;
+    found.write(&store)?;
+    tell(options.json, || found.json(), || found.text())?;
+    options.cases.document.put([(COVERAGE, found.markdown())])
+}
+
 pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
+    if options.scene.iter().any(|name| name == COVERAGE) {
+        return run_coverage(options);
+    }
     let wanted = |name: &str| options.scene.is_empty() || options.scene.iter().any(|s| s == name);
     let in_time = |scene: &Scene| !(options.quick && scene.is_long && options.scene.is_empty());
     let scenes = SCENES

@@ -7,7 +7,8 @@ use clap_complete::Shell;
 
 use super::arguments::{ResumeOptions, RunOptions};
 use super::{
-    accuracy, bench, calibrate, compare, draw, inspect, measure, reproduce, stress, suite, sweep,
+    accuracy, bench, calibrate, compare, draw, estimate, inspect, measure, reproduce, stress,
+    suite, sweep,
 };
 
 const EXAMPLES: &str = "\
@@ -116,6 +117,9 @@ pub enum Command {
     /// Run a scenario over a grid or list of settings and over seeds, on many threads or machines
     #[command(after_help = sweep::EXAMPLE)]
     Sweep(sweep::SweepOptions),
+    /// Compute results with the errors asked for: chooses time steps and numbers of runs
+    #[command(after_help = estimate::EXAMPLES)]
+    Estimate(estimate::EstimateOptions),
     /// Measure densities, speeds and flows in trajectories, real or simulated (§8)
     #[command(
         after_help = "Example: sandbox measure run.sqlite --line 21,9.6,21,10.4 --region 15,8,19,12"

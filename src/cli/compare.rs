@@ -9,6 +9,7 @@ use super::failure::Failure;
 use super::inputs::tracks;
 use super::terminal::{talk, tell};
 use crate::lab::differences::{Differences, of_reports, of_tracks};
+use crate::lab::estimate::{compared, is_answer};
 use crate::output::recording::Recorded;
 use crate::scenario::input;
 use crate::scenario::quote::shown;
@@ -16,7 +17,7 @@ use crate::scenario::trajectories::{ReadOptions, Tracks};
 
 #[derive(Args)]
 pub struct CompareOptions {
-    /// A: the result of a run as --json printed it, a recording (.rrd), or trajectories (SQLite, text, CSV)
+    /// A: the result of a run or an estimate as --json printed it, a recording (.rrd), or trajectories (SQLite, text, CSV)
     pub a: PathBuf,
     /// B: a file of the same kind; a result and a recording can be compared, too
     pub b: PathBuf,
@@ -36,6 +37,11 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
     let paths = [&options.a, &options.b];
     let [first, second] = paths.map(|path| path.display());
     let differences: Differences = match (&a, &b) {
+        (Input::Report(a), Input::Report(b)) if is_answer(a) && is_answer(b) => {
+            let invalid = |error| Failure::Input(format!("{first} or {second}: {error}"));
+            let compared = compared(a, b).map_err(invalid)?;
+            return tell(options.json, || compared.json(), || compared.text());
+        }
         (Input::Report(a), Input::Report(b)) => {
             let invalid = |error| Failure::Input(format!("{first} or {second}: {error}"));
             let differences = of_reports(a, b).map_err(invalid)?;

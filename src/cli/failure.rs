@@ -3,6 +3,7 @@
 use crate::engine::breakdown::Breakdown;
 use crate::engine::simulation::{Fault, Simulation};
 use crate::lab::error::LabError;
+use crate::lab::estimate::QuestionError;
 use crate::lab::measure::MeasureError;
 use crate::lab::sweep::{DrawingError, StudyError};
 use crate::output::plot::PlotError;
@@ -80,6 +81,12 @@ impl Failure {
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
         LabError::from(error).into()
+    }
+}
+
+impl From<QuestionError> for Failure {
+    fn from(error: QuestionError) -> Self {
+        Self::Input(error.to_string())
     }
 }
 

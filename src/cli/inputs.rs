@@ -25,6 +25,27 @@ pub fn scenario(
     writing: u64,
     outputs: &mut Outputs,
 ) -> Result<Scenario, Failure> {
+    let settings = settings(scene, until, outputs)?;
+    let (text, file) = source.text()?;
+    let (scenario, _) = Draft::read(&text, &file, &settings)?.within(main_memory(), writing)?;
+    if let Source::File(path) = source {
+        outputs.reads("the scenario", path);
+    }
+    for (key, path) in &scenario.files {
+        outputs.reads(key, path);
+    }
+    for note in &scenario.notes {
+        talk(&format!("note: {note}"));
+    }
+    Ok(scenario)
+}
+
+/// The settings of the command line; `until` as for [`scenario`].
+pub fn settings(
+    scene: &SceneOptions,
+    until: Option<(&str, f64)>,
+    outputs: &mut Outputs,
+) -> Result<Vec<Setting>, Failure> {
     let (until_flag, until) =
         until.map_or(("", None), |(flag, secs)| (flag, Some(secs.to_string())));
     let seed = scene.seed.map(|seed| seed.to_string());
@@ -64,18 +85,7 @@ pub fn scenario(
         settings.extend(Setting::floor_plan(&plan, &text));
     }
     settings.extend(typed.into_iter().chain(last));
-    let (text, file) = source.text()?;
-    let (scenario, _) = Draft::read(&text, &file, &settings)?.within(main_memory(), writing)?;
-    if let Source::File(path) = source {
-        outputs.reads("the scenario", path);
-    }
-    for (key, path) in &scenario.files {
-        outputs.reads(key, path);
-    }
-    for note in &scenario.notes {
-        talk(&format!("note: {note}"));
-    }
-    Ok(scenario)
+    Ok(settings)
 }
 
 /// Reads the plan of `--geometry`.

@@ -28,6 +28,7 @@ mod calibrate;
 mod compare;
 mod draw;
 mod drive;
+mod estimate;
 mod inspect;
 mod list;
 mod measure;
@@ -105,6 +106,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Calibrate(options) => calibrate::run(&options),
         Command::Schema => list::schema(),
         Command::Sweep(options) => sweep::run(&options),
+        Command::Estimate(options) => estimate::run(&options),
         Command::Measure(options) => measure::run(&options),
         Command::Compare(options) => compare::run(&options),
         Command::List { settings, json } => list::run(settings, json),

@@ -54,6 +54,31 @@ pub fn repeats(text: &str) -> Result<usize, &'static str> {
     within(text, 1..=1000, "not a number of repeats between 1 and 1000")
 }
 
+pub fn runs(text: &str) -> Result<usize, &'static str> {
+    within(
+        text,
+        2..=100_000,
+        "not a number of runs between 2 and 100000",
+    )
+}
+
+pub fn minutes(text: &str) -> Result<f64, &'static str> {
+    within(
+        text,
+        f64::MIN_POSITIVE..=1e7,
+        "not a time in minutes above 0",
+    )
+}
+
+/// Percent.
+pub fn confidence(text: &str) -> Result<f64, &'static str> {
+    within(
+        text,
+        50.0..=99.99,
+        "not a probability between 50 and 99.99 percent",
+    )
+}
+
 pub fn seed(text: &str) -> Result<u64, &'static str> {
     within(text, .., "not a whole number from 0 to 2^64 - 1")
 }

@@ -124,6 +124,22 @@ impl Store {
         self.read(key, FINISHED)
     }
 
+    /// All results of this type, in the order of their identities; those of other types and damaged files are left out.
+    pub fn all<T: DeserializeOwned>(&self) -> Vec<T> {
+        let entries = fs::read_dir(self.cases()).into_iter().flatten().flatten();
+        let files = entries.map(|entry| entry.path());
+        let mut files: Vec<PathBuf> = files
+            .filter(|path| has_extension(path, &[FINISHED]))
+            .collect();
+        files.sort();
+        let read = |path: &PathBuf| {
+            let text = input::bytes(path, LONGEST_TEXT).ok()?;
+            let kept: Kept<T> = serde_json::from_slice(&text).ok()?;
+            Some(kept.content)
+        };
+        files.iter().filter_map(read).collect()
+    }
+
     /// The failure of a job, if it failed; `None` if the file is damaged.
     pub fn failure(&self, key: &Identity) -> Option<Failure> {
         self.read(key, FAILED).unwrap_or_default()

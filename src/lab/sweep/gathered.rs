@@ -210,7 +210,8 @@ fn settings(cell: &Cell) -> Value {
     Value::Object(cell.values.iter().cloned().collect())
 }
 
-fn number(result: &RunResult, name: &str) -> Option<f64> {
+/// A metric of a run, or one of its counts.
+pub(in crate::lab) fn number(result: &RunResult, name: &str) -> Option<f64> {
     match (result.summary.metrics.get(name), name) {
         (Some(value), _) => value.as_f64(),
         (None, "evacuated") => Some(result.evacuated as f64),

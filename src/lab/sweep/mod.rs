@@ -38,6 +38,7 @@ mod written;
 pub use cell::Cell;
 pub(in crate::lab) use choice::source;
 pub(in crate::lab) use entries::Entries;
+pub(in crate::lab) use gathered::number;
 pub use gathered::{Combination, Gathered, State};
 pub use pictures::{Drawing, DrawingError};
 pub(in crate::lab) use plan::{Changes, DataFile, PROFILE, check_keys};

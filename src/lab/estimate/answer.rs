@@ -1,0 +1,209 @@
+//! The answer to a question: values with their errors, and what they cost.
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::limit::Limit;
+use super::run::{Level, Runs};
+use super::series::Reached;
+use super::wanted::Wanted;
+use crate::analysis::statistics::{MeanStd, Share};
+use crate::engine::clock::PAPER_TIME_STEP;
+use crate::runs::drive::End;
+use crate::runs::identity::ENGINE;
+
+/// What ± means, in one sentence for all reports.
+pub const ABOUT: &str = "± is the error from chance (seeds) and from the time step. It is not the error of the model: \
+                         docs/validation.md compares that with experiments.";
+
+/// A wanted result.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// Its name.
+    pub name: String,
+    /// The value in the limit of fine steps, with the half widths of its confidence intervals.
+    #[serde(flatten)]
+    pub reached: Reached,
+    /// The half width asked for, as typed.
+    pub wanted: String,
+    /// Whether the half width is at most that.
+    pub is_reached: bool,
+    /// The order of the error in the time step that fits the runs best, averaged over what is possible.
+    pub order: f64,
+    /// The means at each step with runs.
+    pub steps: Vec<AtStep>,
+    /// The number of runs without a value.
+    pub missing: usize,
+    /// What the default settings would give.
+    pub default: OfDefault,
+    /// What the means at other steps are expected to be.
+    #[serde(skip)]
+    pub limit: Limit,
+}
+
+/// A result at one time step.
+#[derive(Debug, Clone, Serialize)]
+pub struct AtStep {
+    /// The step, seconds.
+    pub step: f64,
+    /// The number of runs with a value.
+    pub runs: usize,
+    /// Their mean.
+    pub mean: f64,
+    /// Their standard deviation; `None` for fewer than two.
+    pub deviation: Option<f64>,
+    /// The error of the step in the mean: that the fit expects at this step, minus the value in the limit.
+    pub error_of_step: f64,
+    /// The values in the order of the seeds.
+    pub values: Vec<Option<f64>>,
+}
+
+/// What the default settings would give: the paper's step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct OfDefault {
+    /// The error of the step in the mean.
+    pub error_of_step: f64,
+    /// The number of runs for the same error; `None` if the error of the step alone is larger.
+    pub runs: Option<f64>,
+    /// Their time on one core, seconds.
+    pub secs: Option<f64>,
+}
+
+/// The answer.
+#[derive(Debug, Clone, Serialize)]
+pub struct Answer {
+    /// The scenario's name.
+    pub scenario: String,
+    /// Its profile.
+    pub profile: String,
+    /// The settings beside time step and seed.
+    pub settings: Vec<String>,
+    /// The probability with which the intervals hold the values.
+    pub confidence: f64,
+    /// The first seed.
+    pub first_seed: u64,
+    /// The wanted results.
+    pub results: Vec<Row>,
+    /// The number of runs, and how they ended.
+    pub runs: Counts,
+    /// The computing time of all runs, seconds on one core.
+    pub secs: f64,
+    /// Why no more runs were made; `None` if all errors are as small as asked for.
+    pub stopped: Option<String>,
+}
+
+/// How many runs there were, and how they ended.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Counts {
+    /// The number of runs.
+    pub all: usize,
+    /// Those with an error.
+    pub failed: usize,
+    /// Those at whose end agents were stuck.
+    pub stuck: usize,
+    /// Those that ended because no agent arrived for some time.
+    pub idle: usize,
+}
+
+impl Counts {
+    /// The counts that a reader should know of, each with its name.
+    pub fn notable(&self) -> impl Iterator<Item = (&'static str, Share)> {
+        let counts = [
+            ("failed", self.failed),
+            ("had stuck agents at the end", self.stuck),
+            ("ended because no agent arrived for some time", self.idle),
+        ];
+        let all = self.all;
+        let counts = counts.into_iter().filter(|(_, count)| *count > 0);
+        counts.map(move |(name, count)| (name, Share::of(count, all)))
+    }
+}
+
+impl Answer {
+    /// The answer of some runs.
+    pub fn of(runs: &Runs) -> Self {
+        let question = runs.question;
+        let results = runs.levels.iter().flat_map(|level| &level.results);
+        let finished = || results.clone().flatten();
+        let wanted = question.request.wanted.iter().enumerate();
+        let [scenario, profile] = question.title.clone();
+        Self {
+            scenario,
+            profile,
+            settings: question.settings.clone(),
+            confidence: question.request.confidence,
+            first_seed: question.first_seed,
+            results: wanted
+                .filter_map(|(k, wanted)| Row::of(runs, k, wanted))
+                .collect(),
+            runs: Counts {
+                all: results.clone().count(),
+                failed: results.clone().filter(|result| result.is_err()).count(),
+                stuck: finished().filter(|result| result.summary.stuck > 0).count(),
+                idle: finished()
+                    .filter(|result| result.summary.end == Some(End::Idle))
+                    .count(),
+            },
+            secs: runs.measured_secs(),
+            stopped: runs.stopped.clone(),
+        }
+    }
+
+    /// Everything as one object.
+    pub fn json(&self) -> Value {
+        json!({ "estimate": self, "about": ABOUT, "engine": ENGINE })
+    }
+}
+
+impl Row {
+    fn of(runs: &Runs, k: usize, wanted: &Wanted) -> Option<Self> {
+        let series = runs.series(k);
+        let digest = series.digest()?;
+        let confidence = runs.question.request.confidence;
+        let (reached, limit) = digest.reached(confidence);
+        let levels = runs.levels.iter().zip(&series.values);
+        let steps = levels.filter_map(|(level, values)| {
+            let known: Vec<f64> = values.iter().flatten().copied().collect();
+            let of = MeanStd::of(&known)?;
+            Some(AtStep {
+                step: level.rung.step,
+                runs: of.count,
+                mean: of.mean,
+                deviation: of.std(),
+                error_of_step: limit.error_at(level.rung.step),
+                values: values.clone(),
+            })
+        });
+        let error_of_step = limit.error_at(PAPER_TIME_STEP);
+        let room = reached.error.powi(2) - error_of_step.powi(2);
+        let needed = digest.width(confidence).powi(2) * digest.variance / room;
+        let needed = (room > 0.0).then_some(needed.max(1.0));
+        let missing = series
+            .values
+            .iter()
+            .flatten()
+            .filter(|value| value.is_none());
+        Some(Self {
+            name: wanted.name.clone(),
+            reached,
+            wanted: wanted.error.to_string(),
+            is_reached: reached.error <= wanted.error.of(reached.value),
+            order: limit.order,
+            limit: limit.clone(),
+            steps: steps.collect(),
+            missing: missing.count(),
+            default: OfDefault {
+                error_of_step,
+                runs: needed,
+                secs: needed.map(|needed| needed * secs_at(runs, PAPER_TIME_STEP)),
+            },
+        })
+    }
+}
+
+/// The time of a run at this step, seconds on one core: that of the runs made, in proportion to their frames.
+fn secs_at(runs: &Runs, step: f64) -> f64 {
+    let start = &runs.levels[runs.question.start];
+    let secs = |level: &Level| level.expected_secs * level.rung.step;
+    runs.measured_factor() * secs(start) / step
+}

@@ -1,0 +1,210 @@
+//! Two answers compared: which differences are larger than their errors.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::series::{Reached, Series};
+use crate::lab::error::LabError;
+use crate::lab::jobs::read;
+use crate::output::table::Table;
+
+/// What is read of an answer.
+#[derive(Deserialize)]
+struct Kept {
+    confidence: f64,
+    first_seed: u64,
+    results: Vec<Row>,
+}
+
+#[derive(Deserialize)]
+struct Row {
+    name: String,
+    #[serde(flatten)]
+    reached: Reached,
+    steps: Vec<AtStep>,
+}
+
+#[derive(Deserialize)]
+struct AtStep {
+    step: f64,
+    values: Vec<Option<f64>>,
+}
+
+/// A result of two answers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Change {
+    /// Its name.
+    pub name: String,
+    /// The value of the first answer.
+    pub a: f64,
+    /// The value of the second answer.
+    pub b: f64,
+    /// Their difference, B − A, in the limit of fine steps.
+    pub change: f64,
+    /// The half width of its confidence interval.
+    pub error: f64,
+    /// Whether it is the difference of runs with the same seeds: what chance adds to both of them cancels.
+    pub is_paired: bool,
+    /// Whether the difference is larger than its error.
+    pub is_clear: bool,
+    /// If it is not: how many times as many runs would make the error as small as the difference, if that stays.
+    pub times_runs: Option<f64>,
+}
+
+/// Two answers compared.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Compared {
+    /// The probability of the intervals.
+    pub confidence: f64,
+    /// The results that both have.
+    pub results: Vec<Change>,
+    /// The results that one of them lacks.
+    pub missing: Vec<String>,
+}
+
+/// Whether this is the JSON of an answer.
+pub fn is_answer(value: &Value) -> bool {
+    value["estimate"]["results"].is_array()
+}
+
+/// The differences between two answers.
+///
+/// # Errors
+/// One of them is not the JSON of an answer, or they have intervals of different probabilities.
+pub fn compared(a: &Value, b: &Value) -> Result<Compared, LabError> {
+    let [a, b]: [Kept; 2] = [read(&a["estimate"])?, read(&b["estimate"])?];
+    if a.confidence != b.confidence {
+        let reason = format!(
+            "intervals of {} and {} % cannot be compared; estimate one of them again with the other --confidence",
+            100.0 * a.confidence,
+            100.0 * b.confidence
+        );
+        return Err(LabError::Data(reason));
+    }
+    let of = |name: &str, all: &Kept| all.results.iter().position(|row| row.name == name);
+    let pairs = a
+        .results
+        .iter()
+        .filter_map(|row| Some((row, &b.results[of(&row.name, &b)?])));
+    let same_seeds = a.first_seed == b.first_seed;
+    let results = pairs.map(|(one, other)| change(one, other, a.confidence, same_seeds));
+    let only = |one: &Kept, other: &Kept| -> Vec<String> {
+        let names = one.results.iter().map(|row| row.name.clone());
+        names.filter(|name| of(name, other).is_none()).collect()
+    };
+    Ok(Compared {
+        confidence: a.confidence,
+        results: results.collect(),
+        missing: [only(&a, &b), only(&b, &a)].concat(),
+    })
+}
+
+fn change(a: &Row, b: &Row, confidence: f64, same_seeds: bool) -> Change {
+    let apart = Reached {
+        value: b.reached.value - a.reached.value,
+        error: a.reached.error.hypot(b.reached.error),
+        ..a.reached
+    };
+    let paired = same_seeds.then(|| paired(a, b, confidence)).flatten();
+    let reached = paired.unwrap_or(apart);
+    let size = reached.value.abs();
+    let is_clear = size > reached.error;
+    let times = (reached.error / size).powi(2);
+    Change {
+        name: a.name.clone(),
+        a: a.reached.value,
+        b: b.reached.value,
+        change: reached.value,
+        error: reached.error,
+        is_paired: paired.is_some(),
+        is_clear,
+        times_runs: (!is_clear && times.is_finite()).then_some(times),
+    }
+}
+
+/// The difference from pairs of runs with the same step and seed, if both answers have enough of them and pairs differ
+/// less than runs with different seeds.
+fn paired(a: &Row, b: &Row, confidence: f64) -> Option<Reached> {
+    /// The part of the runs that must have a partner.
+    const MOST: f64 = 0.8;
+    let mut steps = Vec::new();
+    let mut all: [Vec<Vec<Option<f64>>>; 3] = Default::default();
+    let mut pairs = 0;
+    for one in &a.steps {
+        let Some(other) = b.steps.iter().find(|other| other.step == one.step) else {
+            continue;
+        };
+        let both = one.values.iter().zip(&other.values);
+        let both: Vec<(f64, f64)> = both.filter_map(|(x, y)| Some(((*x)?, (*y)?))).collect();
+        pairs += both.len();
+        steps.push(one.step);
+        all[0].push(both.iter().map(|(x, _)| Some(*x)).collect());
+        all[1].push(both.iter().map(|(_, y)| Some(*y)).collect());
+        all[2].push(both.iter().map(|(x, y)| Some(y - x)).collect());
+    }
+    let runs = |row: &Row| row.steps.iter().map(|at| at.values.len()).sum::<usize>();
+    if (pairs as f64) < MOST * runs(a).max(runs(b)) as f64 {
+        return None;
+    }
+    let [x, y, difference] = all.map(|values| {
+        let steps = steps.clone();
+        Series { steps, values }.digest()
+    });
+    let (x, y, difference) = (x?, y?, difference?);
+    (difference.variance < x.variance + y.variance).then(|| difference.reached(confidence).0)
+}
+
+impl Compared {
+    /// As one JSON object.
+    pub fn json(&self) -> Value {
+        json!({ "compared": self })
+    }
+
+    /// As a table for a terminal.
+    pub fn text(&self) -> String {
+        let verdict = |one: &Change| match (one.is_clear, one.times_runs) {
+            (true, _) => "differ".to_owned(),
+            (false, Some(times)) if times < 1e3 => {
+                format!("undecided; {times:.1} times the runs would decide")
+            }
+            (false, _) => "no difference found".to_owned(),
+        };
+        let table = Table::of(&self.results)
+            .column("result", |one| one.name.as_str())
+            .column("A", |one| digits(one.a, one.error))
+            .column("B", |one| digits(one.b, one.error))
+            .column("B − A", |one| digits(one.change, one.error))
+            .column("±", |one| digits(one.error, one.error))
+            .column(
+                "seeds",
+                |one| if one.is_paired { "same" } else { "different" },
+            )
+            .column("verdict", verdict)
+            .table();
+        let missing = match self.missing.as_slice() {
+            [] => String::new(),
+            names => format!("Only one of them has {}.\n", names.join(", ")),
+        };
+        format!(
+            "{}{missing}± is the {} % interval of the difference, from chance and time steps.\n",
+            table.text(),
+            100.0 * self.confidence
+        )
+    }
+}
+
+/// A number with as many decimals as its error has in two digits.
+pub(super) fn digits(number: f64, error: f64) -> String {
+    let places = error.log10().floor();
+    let decimals = if places.is_finite() {
+        (1.0 - places).clamp(0.0, 12.0)
+    } else {
+        6.0
+    };
+    let decimals = decimals as usize;
+    let text = format!("{number:.decimals$}");
+    match text.trim_matches(['-', '0', '.']).is_empty() {
+        true => text.trim_start_matches('-').to_owned(),
+        false => text,
+    }
+}

@@ -1,0 +1,398 @@
+//! How often intervals hold the value: estimates repeated with the runs of a pool.
+//!
+//! The pool has runs of a question at its four coarsest steps, with many seeds. An estimate is repeated with these runs
+//! in another order each time, and its interval is compared with the limit that all runs of the pool together give.
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::plan::{Goal, Offer, PILOT, further, predicted};
+use super::question::{Question, QuestionError};
+use super::run::Runs;
+use super::series::{Digest, Series};
+use super::wanted::{Limits, Request, Wanted};
+use crate::analysis::statistics::{MeanStd, Range, Share, shuffled};
+use crate::lab::error::LabError;
+use crate::lab::jobs::each;
+use crate::output::table::Table;
+use crate::runs::case::Source;
+use crate::runs::job::Listener;
+use crate::runs::store::Store;
+use crate::scenario::Setting;
+
+/// The probability that intervals are made for.
+const CONFIDENCE: f64 = 0.95;
+/// The number of standard errors on either side of such an interval, if the spread is known.
+const NORMAL: f64 = 1.959_963_984_540_054;
+/// How often the first step is halved.
+const HALVINGS: usize = 2;
+/// Predicted numbers of runs within this factor of the true one count as right.
+const FACTOR: f64 = 1.5;
+/// The profiles.
+const PROFILES: [&str; 4] = ["sph", "walk+sph", "sf->sph", "rvo->sph"];
+/// The scenes, relative to the shipped scenarios, with results and their errors.
+const SCENES: [(&str, [&str; 3]); 2] = [
+    (
+        "evacuation.json",
+        ["density_mean_15s=0.5%", "flow_per_s=1%", "time_secs=2%"],
+    ),
+    (
+        "validation/gap.json",
+        [
+            "gap_flow_per_s=1%",
+            "gap_density_per_m2=1%",
+            "gap_speed_m_per_s=2%",
+        ],
+    ),
+];
+
+/// The size of a study of intervals.
+#[derive(Debug, Clone, Copy)]
+pub struct Pool {
+    /// The number of runs at the finest step, whose mean is the reference.
+    pub reference: usize,
+    /// The number of runs at each other step.
+    pub seeds: usize,
+    /// The number of estimates of each result.
+    pub repeats: usize,
+}
+
+impl Pool {
+    /// The whole study.
+    pub const WHOLE: Self = Self {
+        reference: 1000,
+        seeds: 300,
+        repeats: 200,
+    };
+    /// A check that everything works.
+    pub const QUICK: Self = Self {
+        reference: 20,
+        seeds: 20,
+        repeats: 20,
+    };
+}
+
+/// How often the intervals of one result hold its value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Covered {
+    /// The scenario.
+    pub scene: String,
+    /// The profile.
+    pub profile: String,
+    /// The result.
+    pub result: String,
+    /// The error asked for.
+    pub wanted: String,
+    /// The limit of fine steps that all runs of the pool give, and half its 95 % confidence interval.
+    pub reference: [f64; 2],
+    /// The mean of all runs at the finest step, and half its 95 % confidence interval.
+    pub finest: [f64; 2],
+    /// The number of estimates.
+    pub estimates: usize,
+    /// The number of estimates whose interval holds the reference.
+    pub held: usize,
+    /// The mean number of runs of an estimate.
+    pub runs: f64,
+    /// Their mean time, seconds on one core as expected.
+    pub secs: f64,
+    /// The number and time of the runs at the step that is cheapest if its error and the spread are known.
+    pub known: Option<[f64; 2]>,
+    /// The share of estimates for which the number of runs predicted from another estimate is within a factor of 1.5.
+    pub predicted: f64,
+    /// The number of estimates that ended before the error asked for, for want of runs in the pool.
+    pub unfinished: usize,
+}
+
+/// The results of a study of intervals.
+pub struct Coverage {
+    /// The rows.
+    pub rows: Vec<Covered>,
+    /// The computing time of the pool, seconds on one core.
+    pub secs: f64,
+    pool: Pool,
+}
+
+/// Makes the runs of the pools that are not in the store, and repeats the estimates.
+///
+/// # Errors
+/// A run fails, or results cannot be stored.
+pub fn coverage(pool: Pool, store: &Store, listener: &dyn Listener) -> Result<Coverage, LabError> {
+    let (mut rows, mut secs) = (Vec::new(), 0.0);
+    for (file, errors) in SCENES {
+        for profile in PROFILES {
+            let question = question(file, profile, &errors)?;
+            let mut runs = Runs::none(&question)?;
+            let finest = question.start.saturating_sub(HALVINGS);
+            let mut wanted = vec![0; runs.levels.len()];
+            wanted[finest..].fill(pool.seeds);
+            wanted[finest] = pool.reference;
+            runs.make(&wanted, store, listener)?;
+            secs += runs.measured_secs();
+            for k in 0..errors.len() {
+                let row = covered(&runs, k, finest, pool)?;
+                listener.notes(&format!(
+                    "{} {}: {}: {} of {} intervals hold the value, {:.0} runs",
+                    row.scene, row.profile, row.result, row.held, row.estimates, row.runs
+                ));
+                rows.push(row);
+            }
+        }
+    }
+    Ok(Coverage { rows, secs, pool })
+}
+
+fn question(file: &str, profile: &str, errors: &[&str]) -> Result<Question, LabError> {
+    let invalid = |error: QuestionError| LabError::Data(error.to_string());
+    let wanted: Result<Vec<Wanted>, String> = errors.iter().map(|text| text.parse()).collect();
+    let request = Request {
+        wanted: wanted.map_err(LabError::Data)?,
+        confidence: CONFIDENCE,
+        limits: Limits {
+            runs: usize::MAX,
+            secs: None,
+        },
+    };
+    let profile = Setting::of("profile", profile.into(), &format!("profile={profile}"));
+    Question::new(Source::BuiltIn(file.into()), vec![profile], request, None).map_err(invalid)
+}
+
+/// One estimate with the runs of a pool.
+struct Estimate {
+    held: bool,
+    runs: usize,
+    secs: f64,
+    is_finished: bool,
+    /// What its runs say in the end.
+    digest: Option<Digest>,
+}
+
+fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, LabError> {
+    let question = runs.question;
+    let wanted = &question.request.wanted[k];
+    let all = runs.series(k);
+    let all = Series {
+        steps: all.steps[finest..].to_vec(),
+        values: all.values[finest..].to_vec(),
+    };
+    let offers = &runs.offers()[finest..];
+    let means: Vec<MeanStd> = all
+        .values
+        .iter()
+        .filter_map(|values| MeanStd::of(&values.iter().flatten().copied().collect::<Vec<_>>()))
+        .collect();
+    let Some((finest_mean, digest)) = means.first().zip(all.digest()) else {
+        return Err(LabError::missing(&question.title[0], &wanted.name));
+    };
+    let reference = digest.reached(CONFIDENCE).0;
+    let estimate = |seed: usize| {
+        let order = shuffled(pool.seeds.min(pool.reference), seed as u64);
+        repeated(
+            &all,
+            &order,
+            offers,
+            question.start - finest,
+            wanted,
+            reference.value,
+        )
+    };
+    let estimates = each(pool.repeats, estimate)?;
+    let count = estimates.len() as f64;
+    let mean = |of: &dyn Fn(&Estimate) -> f64| estimates.iter().map(of).sum::<f64>() / count;
+    // Each estimate predicts the number of runs of the next one.
+    let pairs = estimates.iter().zip(estimates.iter().cycle().skip(1));
+    let right = pairs.filter(|(before, after)| {
+        let known = before.digest.clone().map(|digest| Goal {
+            digest,
+            tolerance: wanted.error,
+        });
+        let start = question.start - finest;
+        known.is_some_and(|known| {
+            let runs = predicted(&[known], offers, start, CONFIDENCE);
+            let ratio = runs.iter().sum::<usize>() as f64 / after.runs as f64;
+            (1.0 / FACTOR..=FACTOR).contains(&ratio)
+        })
+    });
+    let right = right.count() as f64;
+    let allowed = wanted.error.of(reference.value);
+    let known = means.iter().zip(offers).filter_map(|(mean, offer)| {
+        let room = allowed.powi(2) - (mean.mean - reference.value).powi(2);
+        let runs = ((NORMAL * mean.std()?).powi(2) / room).ceil().max(2.0);
+        (room > 0.0).then_some([runs, runs * offer.secs])
+    });
+    Ok(Covered {
+        scene: question.title[0].clone(),
+        profile: question.title[1].clone(),
+        result: wanted.name.clone(),
+        wanted: wanted.error.to_string(),
+        reference: [reference.value, reference.error],
+        finest: [
+            finest_mean.mean,
+            finest_mean.interval_95().unwrap_or_default(),
+        ],
+        estimates: estimates.len(),
+        held: estimates.iter().filter(|one| one.held).count(),
+        runs: mean(&|one| one.runs as f64),
+        secs: mean(&|one| one.secs),
+        known: known.min_by(|a, b| a[1].total_cmp(&b[1])),
+        predicted: right / count,
+        unfinished: estimates.iter().filter(|one| !one.is_finished).count(),
+    })
+}
+
+/// An estimate with the runs of a pool in this order.
+fn repeated(
+    all: &Series,
+    order: &[usize],
+    offers: &[Offer],
+    start: usize,
+    wanted: &Wanted,
+    reference: f64,
+) -> Estimate {
+    let mut counts = vec![0; offers.len()];
+    counts[start..].fill(PILOT);
+    loop {
+        let values = all.values.iter().zip(&counts);
+        let drawn = Series {
+            steps: all.steps.clone(),
+            values: values
+                .map(|(values, &count)| order[..count].iter().map(|&k| values[k]).collect())
+                .collect(),
+        };
+        let Some(digest) = drawn.digest() else {
+            return Estimate {
+                held: false,
+                runs: 0,
+                secs: 0.0,
+                is_finished: false,
+                digest: None,
+            };
+        };
+        let next = next(&digest, &counts, offers, wanted);
+        let more = next.clone().unwrap_or_default();
+        let asked: Vec<usize> = counts
+            .iter()
+            .zip(&more)
+            .map(|(all, more)| all + more)
+            .collect();
+        let is_finished = next.is_none();
+        if is_finished || asked.iter().any(|&count| count > order.len()) {
+            let reached = digest.reached(CONFIDENCE).0;
+            let secs = counts
+                .iter()
+                .zip(offers)
+                .map(|(count, offer)| *count as f64 * offer.secs);
+            return Estimate {
+                held: (reached.value - reference).abs() <= reached.error,
+                runs: counts.iter().sum(),
+                secs: secs.sum(),
+                is_finished,
+                digest: Some(digest),
+            };
+        }
+        counts = asked;
+    }
+}
+
+/// The further runs of an estimate.
+fn next(
+    digest: &Digest,
+    counts: &[usize],
+    offers: &[Offer],
+    wanted: &Wanted,
+) -> Option<Vec<usize>> {
+    let goal = Goal {
+        digest: digest.clone(),
+        tolerance: wanted.error,
+    };
+    let offers = offers.iter().zip(counts);
+    let offers: Vec<Offer> = offers
+        .map(|(offer, &runs)| Offer { runs, ..*offer })
+        .collect();
+    further(&[goal], &offers, CONFIDENCE)
+}
+
+impl Coverage {
+    /// The number of intervals that hold the value, of all.
+    pub fn total(&self) -> Share {
+        let held = self.rows.iter().map(|row| row.held).sum();
+        Share::of(held, self.rows.iter().map(|row| row.estimates).sum())
+    }
+
+    /// As Markdown.
+    pub fn markdown(&self) -> String {
+        self.written(Table::markdown)
+    }
+
+    /// For a terminal.
+    pub fn text(&self) -> String {
+        self.written(Table::text)
+    }
+
+    fn written(&self, table: fn(&Table) -> String) -> String {
+        let worst = self
+            .rows
+            .iter()
+            .map(|row| 100.0 * row.held as f64 / row.estimates.max(1) as f64);
+        let ratio = |k: usize, of: &dyn Fn(&Covered) -> f64| {
+            let ratios = self
+                .rows
+                .iter()
+                .filter_map(|row| Some(of(row) / row.known?[k]));
+            Range::of(&ratios.collect::<Vec<_>>()).median
+        };
+        format!(
+            "{}\n{} % intervals hold the value in {} of all estimates; worst row {:.1} %. Median over the rows: {:.1} \
+             times the runs and {:.1} times the time of an estimate for which spread and error of the step are known. \
+             The pools of {} runs at the finest step and {} at each other took {:.1} hours on one core.\n",
+            table(&self.table()),
+            100.0 * CONFIDENCE,
+            self.total(),
+            Range::of(&worst.collect::<Vec<_>>()).minimum,
+            ratio(0, &|row| row.runs),
+            ratio(1, &|row| row.secs),
+            self.pool.reference,
+            self.pool.seeds,
+            self.secs / 3600.0,
+        )
+    }
+
+    fn table(&self) -> Table {
+        Table::of(&self.rows)
+            .column("scene", |row| row.scene.as_str())
+            .column("profile", |row| row.profile.as_str())
+            .column("result", |row| row.result.as_str())
+            .column("wanted", |row| row.wanted.as_str())
+            .column("reference", |row| {
+                format!("{:.4} ± {:.4}", row.reference[0], row.reference[1])
+            })
+            .column("mean at the finest step", |row| {
+                format!("{:.4} ± {:.4}", row.finest[0], row.finest[1])
+            })
+            .fixed("held [%]", 1, |row| {
+                100.0 * row.held as f64 / row.estimates.max(1) as f64
+            })
+            .fixed("runs", 0, |row| row.runs)
+            .fixed("if known", 0, |row| row.known.map(|known| known[0]))
+            .fixed("time, times that if known", 1, |row| {
+                row.known.map(|known| row.secs / known[1])
+            })
+            .fixed("predicted [%]", 0, |row| 100.0 * row.predicted)
+            .column("unfinished", |row| row.unfinished)
+            .table()
+    }
+
+    /// Writes `coverage.md` and `coverage.json` into the store's folder.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn write(&self, store: &Store) -> Result<(), LabError> {
+        store.write("coverage.md", self.markdown().as_bytes())?;
+        store.write("coverage.json", format!("{:#}\n", self.json()).as_bytes())?;
+        Ok(())
+    }
+
+    /// All results as one object.
+    pub fn json(&self) -> Value {
+        json!({ "confidence": CONFIDENCE, "pool_secs": self.secs, "rows": self.rows })
+    }
+}

@@ -1,0 +1,135 @@
+//! What an estimate is expected to need, from finished runs of the same profile.
+
+use std::fmt::Write;
+
+use rayon::current_num_threads;
+use serde::Serialize;
+
+use super::plan::{Goal, predicted};
+use super::question::Question;
+use super::run::Runs;
+use super::series::Series;
+use super::wanted::Tolerance;
+use crate::analysis::round;
+use crate::lab::error::LabError;
+use crate::lab::sweep::number;
+use crate::runs::case::RunResult;
+use crate::runs::store::Store;
+
+/// What an estimate is expected to need.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Forecast {
+    /// The scenario with the runs that it is based on.
+    pub based_on: String,
+    /// The number of these runs.
+    pub known: usize,
+    /// The expected steps, seconds, with their numbers of runs.
+    pub runs: Vec<(f64, usize)>,
+    /// The expected time on one core, seconds.
+    pub secs: f64,
+}
+
+impl Forecast {
+    /// From the finished runs in `store`: those of the same scenario and profile, or else of the scenario with the most
+    /// runs of this profile that has all wanted results, if all errors are relative. `None` without such runs.
+    ///
+    /// # Errors
+    /// The scenario has become invalid.
+    pub fn of(question: &Question, store: &Store) -> Result<Option<Self>, LabError> {
+        let [scenario, profile] = &question.title;
+        let mut known: Vec<RunResult> = store.all();
+        known.retain(|run| run.summary.profile == *profile && run.summary.frames > 0);
+        let wanted = &question.request.wanted;
+        let is_relative = wanted
+            .iter()
+            .all(|wanted| matches!(wanted.error, Tolerance::Relative(_)));
+        let has_all = |run: &&RunResult| {
+            wanted
+                .iter()
+                .all(|wanted| number(run, &wanted.name).is_some())
+        };
+        let mut scenes: Vec<&str> = known
+            .iter()
+            .filter(has_all)
+            .map(|run| run.summary.scenario.as_str())
+            .collect();
+        scenes.sort_unstable();
+        let others = scenes.chunk_by(|a, b| a == b).max_by_key(|runs| runs.len());
+        let others = others.filter(|_| is_relative).map(|runs| runs[0]);
+        let own = scenes
+            .iter()
+            .any(|scene| scene == scenario)
+            .then_some(scenario.as_str());
+        let Some(based_on) = own.or(others).map(str::to_owned) else {
+            return Ok(None);
+        };
+        known.retain(|run| run.summary.scenario == based_on);
+        let runs = Runs::none(question)?;
+        let offers = runs.offers();
+        let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
+        let step = |run: &RunResult| run.summary.time_secs / run.summary.frames as f64;
+        let goals = wanted.iter().map(|wanted| {
+            let values = steps.iter().map(|offered| {
+                let own = known
+                    .iter()
+                    .filter(|run| (step(run) / offered - 1.0).abs() < 1e-6);
+                own.map(|run| number(run, &wanted.name)).collect()
+            });
+            let series = Series {
+                steps: steps.clone(),
+                values: values.collect(),
+            };
+            let digest = series.digest()?;
+            Some(Goal {
+                digest,
+                tolerance: wanted.error,
+            })
+        });
+        let Some(goals) = goals.collect::<Option<Vec<Goal>>>() else {
+            return Ok(None);
+        };
+        let counts = predicted(&goals, &offers, question.start, question.request.confidence);
+        let start = &offers[question.start];
+        let per_step = known.iter().map(|run| run.wall_secs * step(run));
+        let per_step = per_step.sum::<f64>() / known.len() as f64 / start.step / start.secs;
+        let is_own = based_on == *scenario;
+        let secs = offers
+            .iter()
+            .zip(&counts)
+            .map(|(offer, runs)| offer.secs * *runs as f64);
+        let secs = secs.sum::<f64>() * if is_own { per_step } else { 1.0 };
+        let used = steps
+            .iter()
+            .copied()
+            .zip(counts)
+            .filter(|(_, runs)| *runs > 0);
+        Ok(Some(Self {
+            based_on,
+            known: known.len(),
+            runs: used.collect(),
+            secs,
+        }))
+    }
+
+    /// In words, for a terminal.
+    pub fn text(&self) -> String {
+        let all: usize = self.runs.iter().map(|(_, runs)| runs).sum();
+        let threads = current_num_threads();
+        let mut text = format!(
+            "expected: {all} runs, {} min on {threads} threads, from {} runs of {}",
+            round::brief(self.secs / 60.0 / threads as f64),
+            self.known,
+            self.based_on
+        );
+        for (k, (step, runs)) in self.runs.iter().enumerate() {
+            let before = if k == 0 { ": " } else { ", " };
+            write!(
+                text,
+                "{before}{runs} with a step of {} s",
+                round::brief(*step)
+            )
+            .ok();
+        }
+        text + "\n"
+    }
+}

@@ -1,0 +1,201 @@
+//! The limit of fine time steps, from runs at several steps.
+//!
+//! A measurement of a run at the time step h is modeled as
+//!
+//! y = μ + β (h/h₁)^p + ε,  h₁ = 0.02 s,
+//!
+//! with μ its mean in the limit, β the error of the paper's step, and ε the chance of the seed, normal with a standard
+//! deviation σ that does not depend on h. μ has a flat prior; p is one of nine orders between 0.4 and 2.5, which are
+//! equally likely at first; β is normal with mean 0 and a standard deviation of 0.2, 0.6 or 3 σ. These three, and their
+//! weights, are the errors of 32 measurements in six scenes with four profiles (docs/accuracy.md). Given p and the size
+//! of β, the posterior of (μ, β) is normal; the posterior of μ is the mixture over all p and sizes, weighted by how
+//! likely they make the data.
+//!
+//! Steps may be too long for any order: social forces in a jam change the flow by half from one step to the next. So
+//! with a prior weight of 0.1 the coarsest of three or more steps does not belong to the others, and its mean may be
+//! anywhere within 10 σ.
+//!
+//! No sum of orders is exactly true: an eighth of the error that the finest step still has by this model counts as a
+//! standard error on top. At 95 % this is the safety factor 1.25 of the grid convergence index (Roache 1994).
+
+use std::f64::consts::TAU;
+
+/// h₁, seconds.
+const REFERENCE_STEP: f64 = crate::engine::clock::PAPER_TIME_STEP;
+/// The orders p.
+const ORDERS: [f64; 9] = [0.4, 0.5, 0.63, 0.79, 1.0, 1.26, 1.58, 2.0, 2.5];
+/// Sizes of the error β in standard deviations of a run, and their weights.
+const SIZES: [(f64, f64); 3] = [(0.2, 0.4), (0.6, 0.4), (3.0, 0.2)];
+/// The prior weight of a coarsest step that is too long, and the range of its mean, in standard deviations of a run.
+const TOO_LONG: (f64, f64) = (0.1, 20.0);
+/// The part of the finest step's error that counts as a standard error.
+const UNMODELED: f64 = 0.125;
+/// The smallest standard deviation over runs that sizes refer to, as a part of the value: for runs without chance.
+const LEAST_SPREAD: f64 = 1e-3;
+/// The smallest standard deviation over runs, as a part of the value: that of rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// The runs at one time step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Level {
+    /// The time step, seconds.
+    pub step: f64,
+    /// The number of runs, at least 1.
+    pub runs: usize,
+    /// The mean of their values.
+    pub mean: f64,
+}
+
+/// What is known about a measurement in the limit of fine steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limit {
+    /// The components of the mixture.
+    components: Vec<Component>,
+    /// The mean in the limit.
+    pub value: f64,
+    /// The variance of `value`.
+    pub variance: f64,
+    /// The part of this variance that comes from the seeds.
+    pub from_seeds: f64,
+    /// The mean order p.
+    pub order: f64,
+}
+
+/// The posterior for one order and size.
+#[derive(Debug, Clone, PartialEq)]
+struct Component {
+    weight: f64,
+    order: f64,
+    /// The posterior mean of μ.
+    value: f64,
+    /// Its variance.
+    variance: f64,
+    /// The posterior mean of β.
+    error: f64,
+    /// The weights of the levels' means in `value`; the last one is missing if its step is too long.
+    shares: Vec<f64>,
+}
+
+impl Limit {
+    /// The limit of measurements at some levels, from the finest to the coarsest. `variance` is that of single runs.
+    pub fn of(levels: &[Level], variance: f64) -> Self {
+        // Differences from the finest level's mean: sums of squares of the values themselves would lose digits.
+        let origin = levels.first().map_or(0.0, |level| level.mean);
+        let variance = variance
+            .max((ROUNDING * origin).powi(2))
+            .max(f64::MIN_POSITIVE);
+        let spread = variance.sqrt().max(LEAST_SPREAD * origin.abs());
+        let mut logs = Vec::new();
+        let mut components = Vec::new();
+        let (weight, range) = TOO_LONG;
+        let apart = levels.split_last().filter(|(_, others)| others.len() > 1);
+        // The last level's share in how likely the data are.
+        let (belongs, free) = apart.map_or((0.0, None), |(last, others)| {
+            let precision = last.runs as f64 / variance;
+            let off = last.mean - origin;
+            let density = 0.5 * (precision / TAU).ln() - 0.5 * precision * off * off;
+            let free = f64::ln(weight / (range * spread));
+            (f64::ln(1.0 - weight) + density, Some((free, others)))
+        });
+        for used in [Some((belongs, levels)), free].into_iter().flatten() {
+            for order in ORDERS {
+                for (size, prior) in SIZES {
+                    let of = component(used.1, origin, variance, order, size * spread);
+                    logs.push(used.0 + of.0 + f64::ln(prior));
+                    components.push(of.1);
+                }
+            }
+        }
+        let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = logs.iter().map(|log| (log - most).exp()).sum();
+        for (component, log) in components.iter_mut().zip(&logs) {
+            component.weight = (log - most).exp() / sum;
+        }
+        let mean = |of: &dyn Fn(&Component) -> f64| -> f64 {
+            components.iter().map(|c| c.weight * of(c)).sum()
+        };
+        let value = mean(&|c| c.value);
+        let finest = levels.first().map_or(REFERENCE_STEP, |level| level.step);
+        let unmodeled = UNMODELED * mean(&|c| c.at(finest) - c.value);
+        let spread_of_value = mean(&|c| c.variance + (c.value - value).powi(2));
+        let from_seeds = levels.iter().enumerate().map(|(k, level)| {
+            mean(&|c| c.shares.get(k).copied().unwrap_or(0.0)).powi(2) * variance
+                / level.runs as f64
+        });
+        Self {
+            value: origin + value,
+            variance: spread_of_value + unmodeled.powi(2),
+            from_seeds: from_seeds.sum(),
+            order: mean(&|c| c.order),
+            components: components
+                .iter()
+                .map(|c| Component {
+                    value: origin + c.value,
+                    ..c.clone()
+                })
+                .collect(),
+        }
+    }
+
+    /// The mean that is expected at this step.
+    pub fn at(&self, step: f64) -> f64 {
+        let parts = self.components.iter();
+        parts
+            .map(|component| component.weight * component.at(step))
+            .sum()
+    }
+
+    /// The error that is expected at this step: the mean there minus that in the limit.
+    pub fn error_at(&self, step: f64) -> f64 {
+        self.at(step) - self.value
+    }
+}
+
+impl Component {
+    fn at(&self, step: f64) -> f64 {
+        self.value + self.error * (step / REFERENCE_STEP).powf(self.order)
+    }
+}
+
+/// The posterior for this order, and a standard deviation `size` of β; and the logarithm of how likely they make the
+/// data.
+fn component(
+    levels: &[Level],
+    origin: f64,
+    variance: f64,
+    order: f64,
+    size: f64,
+) -> (f64, Component) {
+    // The inverse of the covariance matrix of (μ, β) is [[a, b], [b, d]], its product with their means is (u, v).
+    let (mut a, mut b, mut d) = (0.0, 0.0, 1.0 / (size * size));
+    let (mut u, mut v) = (0.0, 0.0);
+    for level in levels {
+        let (x, weight) = (
+            (level.step / REFERENCE_STEP).powf(order),
+            level.runs as f64 / variance,
+        );
+        let mean = level.mean - origin;
+        a += weight;
+        b += weight * x;
+        d += weight * x * x;
+        u += weight * mean;
+        v += weight * x * mean;
+    }
+    let determinant = a * d - b * b;
+    let value = (d * u - b * v) / determinant;
+    let error = (a * v - b * u) / determinant;
+    let shares = levels.iter().map(|level| {
+        let x = (level.step / REFERENCE_STEP).powf(order);
+        (d - b * x) / determinant * level.runs as f64 / variance
+    });
+    let log = 0.5 * (u * value + v * error) - 0.5 * (size * size * determinant).ln();
+    let component = Component {
+        weight: 0.0,
+        order,
+        value,
+        variance: d / determinant,
+        error,
+        shares: shares.collect(),
+    };
+    (log, component)
+}

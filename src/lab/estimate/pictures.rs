@@ -1,0 +1,154 @@
+//! The picture of an estimate: the way to each result.
+
+use super::answer::{Answer, Row};
+use super::run::Runs;
+use crate::engine::clock::PAPER_TIME_STEP;
+use crate::lab::gallery::{around, band, curve};
+use crate::output::colors::light;
+use crate::output::plot::{
+    Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style, line_color,
+};
+
+/// The color of a confidence band, as a part of its line's.
+const LIGHT: f64 = 0.25;
+
+/// Three panels for each result: its mean at each step, with the limit; its error after each round of runs; and the
+/// error over the computing time, beside that of the default step.
+pub fn sheet(runs: &Runs, answer: &Answer) -> Sheet {
+    let panels = answer
+        .results
+        .iter()
+        .enumerate()
+        .flat_map(|(k, row)| [by_step(row), by_round(runs, k, row), by_time(runs, k, row)]);
+    let title = format!("{}: {}", answer.scenario, answer.profile);
+    Sheet::new(&title, 3, [190.0, 130.0], panels.collect())
+}
+
+fn by_step(row: &Row) -> Panel {
+    let coarsest = row.steps.iter().map(|at| at.step).fold(0.0, f64::max);
+    let reached = row.reached;
+    let error = |at: &super::answer::AtStep| {
+        at.deviation
+            .map_or(0.0, |deviation| deviation / (at.runs as f64).sqrt())
+    };
+    let points = row.steps.iter().map(|at| Point {
+        x: at.step,
+        y: at.mean,
+        error: 2.0 * error(at),
+    });
+    let ends = row
+        .steps
+        .iter()
+        .flat_map(|at| [at.mean - 2.0 * error(at), at.mean + 2.0 * error(at)]);
+    let ends = ends.chain([reached.value - reached.error, reached.value + reached.error]);
+    let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
+        [low.min(y), high.max(y)]
+    });
+    let margin = (0.08 * (high - low))
+        .max(1e-9 * high.abs())
+        .max(f64::MIN_POSITIVE);
+    let color = line_color(0);
+    let across = [-0.02 * coarsest, 1.05 * coarsest];
+    let [upper, lower] =
+        [1.0, -1.0].map(|side| across.map(|x| [x, reached.value + side * reached.error]));
+    let steps = (0..=60).map(|k| f64::from(k) / 60.0 * 1.05 * coarsest);
+    let fit = steps.map(|step| [step, row.limit.at(step)]);
+    let marks = vec![
+        band(&upper, &lower, light(color, LIGHT)),
+        Mark::line(
+            across.map(|x| [x, reached.value]),
+            Style::full(color, 1.2, "estimate"),
+        ),
+        Mark::line(fit, Style::broken(color, 1.0, "expected means")),
+        Mark::Points(points.collect(), Style::full(BLACK, 2.4, "mean of runs")),
+    ];
+    let x = Axis::linear("time step [s]", [-0.03 * coarsest, 1.06 * coarsest]);
+    let y = Axis::linear(&row.name, [low - margin, high + margin]);
+    Panel::new("", x, y, marks).with_legend(Corner::UpperLeft)
+}
+
+fn by_round(runs: &Runs, k: usize, row: &Row) -> Panel {
+    let reached = runs
+        .looks
+        .iter()
+        .filter_map(|look| Some((look.runs.iter().sum::<usize>() as f64, look.reached[k]?)));
+    let reached: Vec<_> = reached.collect();
+    let line = |of: fn(&super::Reached) -> f64, number: usize, label: &str| {
+        let points = reached.iter().map(|(runs, reached)| [*runs, of(reached)]);
+        let points = points.filter(|point| point[1] > 0.0);
+        curve(points, Style::full(line_color(number), 1.2, label), 2.2)
+    };
+    let wanted = runs.question.request.wanted[k].error.of(row.reached.value);
+    let most = reached.last().map_or(1.0, |(runs, _)| *runs);
+    let mut marks = vec![Mark::line(
+        [[0.0, wanted], [1.05 * most, wanted]],
+        Style::broken(GRAY, 1.0, "wanted"),
+    )];
+    marks.extend(line(|reached| reached.error, 0, "both"));
+    marks.extend(line(|reached| reached.seeds, 1, "seeds"));
+    marks.extend(line(|reached| reached.step, 2, "step"));
+    let errors = reached.iter().flat_map(|(_, r)| [r.error, r.seeds, r.step]);
+    let y = Axis::log("half width", around(errors.chain([wanted]), 1.5));
+    let x = Axis::linear("runs", [0.0, 1.05 * most]);
+    Panel::new("", x, y, marks).with_legend(Corner::LowerLeft)
+}
+
+fn by_time(runs: &Runs, k: usize, row: &Row) -> Panel {
+    let factor = runs.measured_factor();
+    let secs = |counts: &[usize]| -> f64 {
+        let levels = runs.levels.iter().zip(counts);
+        levels
+            .map(|(level, runs)| level.expected_secs * factor * *runs as f64)
+            .sum()
+    };
+    let made = runs
+        .looks
+        .iter()
+        .filter_map(|look| Some([secs(&look.runs), look.reached[k]?.error]));
+    let made: Vec<[f64; 2]> = made.collect();
+    let own = row
+        .default
+        .secs
+        .zip(row.default.runs)
+        .map(|(secs, runs)| secs / runs);
+    let start = &runs.levels[runs.question.start];
+    let own = own.unwrap_or(factor * start.expected_secs * start.rung.step / PAPER_TIME_STEP);
+    let spread = row.reached.seeds.max(row.reached.error * 0.1);
+    let all = row.default.runs.unwrap_or(1.0);
+    // ± of the default step with its error: chance falls with the number of runs, the error of the step stays.
+    let room = (row.reached.error.powi(2) - row.default.error_of_step.powi(2)).max(0.0);
+    let chance = if row.default.runs.is_some() {
+        room * all
+    } else {
+        spread.powi(2) * all
+    };
+    let default = (0..24).map(|power| {
+        let runs = 1.5_f64.powi(power);
+        let error = (chance / runs + row.default.error_of_step.powi(2)).sqrt();
+        [own * runs, error]
+    });
+    let last = made.last().map_or(1.0, |point| point[0]);
+    let default: Vec<[f64; 2]> = default.filter(|point| point[0] <= 3.0 * last).collect();
+    let x = Axis::log(
+        "computing time [s]",
+        around(made.iter().chain(&default).map(|point| point[0]), 1.3),
+    );
+    let y = Axis::log(
+        "half width",
+        around(made.iter().chain(&default).map(|point| point[1]), 1.3),
+    );
+    let mut marks = vec![Mark::line(
+        default,
+        Style::broken(GRAY, 1.2, "default step, its error known"),
+    )];
+    marks.extend(curve(
+        made.iter().copied(),
+        Style::full(line_color(0), 1.2, "estimate"),
+        2.2,
+    ));
+    marks.extend(
+        made.last()
+            .map(|&at| Mark::dots([at], Style::broken(BLACK, 5.0, "result"))),
+    );
+    Panel::new("", x, y, marks).with_legend(Corner::LowerLeft)
+}

@@ -1,0 +1,120 @@
+//! Which runs come next.
+//!
+//! Further runs are added one by one where they shrink the excess of errors over those asked for by most per second of
+//! computing, until none is left; their means count as expected. Half of the runs of this plan are made, and the next
+//! plan is made with their results. All of it is a function of the values: it does not depend on clocks and threads.
+
+use super::limit::Limit;
+use super::series::Digest;
+use super::wanted::Tolerance;
+
+/// The runs of the first round at each of its two steps.
+pub const PILOT: usize = 5;
+/// A plan with at most this number of runs is carried out at once.
+const FEW: usize = 6;
+/// A plan has at most this number of additions; later ones are left to the next plan.
+const LONGEST: usize = 80;
+/// Predictions end at this number of runs.
+const MOST_PREDICTED: usize = 100_000;
+
+/// A step on offer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Offer {
+    /// The time step, seconds.
+    pub step: f64,
+    /// The expected time of a run, seconds on one core.
+    pub secs: f64,
+    /// The number of runs so far.
+    pub runs: usize,
+}
+
+/// A measurement with the error asked for.
+pub struct Goal {
+    /// Its runs so far.
+    pub digest: Digest,
+    /// The error asked for.
+    pub tolerance: Tolerance,
+}
+
+/// The number of further runs at each of `offers`, which are in order from the finest to the coarsest step; `None` if
+/// all goals are reached.
+pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<usize>> {
+    let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
+    let expected: Vec<Limit> = goals
+        .iter()
+        .map(|goal| Limit::of(&goal.digest.levels, goal.digest.variance))
+        .collect();
+    let excess = |plan: &[usize]| -> f64 {
+        let goals = goals.iter().zip(&expected);
+        let after = goals.map(|(goal, expected)| {
+            let after = goal.digest.with(expected, &steps, plan);
+            after.excess(goal.tolerance, confidence)
+        });
+        after.sum()
+    };
+    let mut plan = vec![0; offers.len()];
+    let mut left = excess(&plan);
+    if left <= 0.0 {
+        return None;
+    }
+    // A step that is finer than half of the finest one so far is left to the next plan.
+    let tried = offers.iter().position(|offer| offer.runs > 0);
+    let first = tried.unwrap_or(0).saturating_sub(1);
+    for _ in 0..LONGEST {
+        let choices = (first..offers.len()).map(|k| {
+            let runs = offers[k].runs + plan[k];
+            let added = if runs > 0 { (runs / 4).max(1) } else { 2 };
+            let mut longer = plan.clone();
+            longer[k] += added;
+            let after = excess(&longer);
+            let gain = (left - after) / (added as f64 * offers[k].secs);
+            (gain, longer, after)
+        });
+        let best = choices.max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, longer, after)) = best.filter(|(gain, ..)| *gain > 0.0) else {
+            break;
+        };
+        (plan, left) = (longer, after);
+        if left <= 0.0 {
+            break;
+        }
+    }
+    let count: usize = plan.iter().sum();
+    if count == 0 {
+        plan[first] = 2; // no single addition helps: a finer step may
+    } else if count > FEW {
+        plan.iter_mut().for_each(|runs| *runs = runs.div_ceil(2));
+    }
+    Some(plan)
+}
+
+/// The number of runs at each of `offers` that an estimate is expected to need, from what other runs say of its goals.
+pub fn predicted(known: &[Goal], offers: &[Offer], start: usize, confidence: f64) -> Vec<usize> {
+    let expected: Vec<Limit> = known
+        .iter()
+        .map(|goal| Limit::of(&goal.digest.levels, goal.digest.variance))
+        .collect();
+    let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
+    let mut offers = offers.to_vec();
+    offers.iter_mut().for_each(|offer| offer.runs = 0);
+    offers[start..]
+        .iter_mut()
+        .for_each(|offer| offer.runs = PILOT);
+    loop {
+        let counts: Vec<usize> = offers.iter().map(|offer| offer.runs).collect();
+        let goals = known.iter().zip(&expected).map(|(goal, expected)| Goal {
+            digest: goal.digest.afresh(expected, &steps, &counts),
+            tolerance: goal.tolerance,
+        });
+        let goals: Vec<Goal> = goals.collect();
+        match further(&goals, &offers, confidence) {
+            Some(more) if counts.iter().sum::<usize>() < MOST_PREDICTED => {
+                offers
+                    .iter_mut()
+                    .zip(more)
+                    .for_each(|(offer, more)| offer.runs += more);
+            }
+            _ => return counts,
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! A scenario whose results are estimated, and the time steps on offer.
+
+use serde_json::{Value, json};
+
+use super::wanted::Request;
+use crate::analysis::stability;
+use crate::engine::clock::SHORTEST_TIME_STEP;
+use crate::lab::gallery::distinct;
+use crate::runs::case::{Case, Source};
+use crate::runs::drive::Run;
+use crate::runs::error::RunError;
+use crate::runs::memory::Memory;
+use crate::runs::summary::Summary;
+use crate::scenario::quote::shown;
+use crate::scenario::{Preset, Scenario, Setting, suggestion};
+
+/// How often the first step may be halved.
+const HALVINGS: u32 = 6;
+/// Results of every run beside its measurements.
+pub const OF_RUNS: [&str; 2] = ["evacuated", "time_secs"];
+
+/// Why a question cannot be asked.
+#[derive(Debug, thiserror::Error)]
+pub enum QuestionError {
+    /// The scenario is invalid or does not fit into memory.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The scenario does not measure a wanted result.
+    #[error("--error {name}: the scenario has no such result; it has {known}{suggestion}")]
+    Unknown {
+        /// The name.
+        name: String,
+        /// The names of all results.
+        known: String,
+        /// "; did you mean …?", or empty.
+        suggestion: String,
+    },
+    /// A result is wanted twice.
+    #[error("--error {0}: given twice; give one error for each result")]
+    Twice(String),
+}
+
+/// A time step on offer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rung {
+    /// The time step, seconds.
+    pub step: f64,
+    /// The number of frames per coarse frame: the time between coarse frames is that of the scenario.
+    pub coarse_every: u32,
+}
+
+/// A scenario whose results are estimated.
+pub struct Question {
+    /// What is asked for.
+    pub request: Request,
+    /// The names of all results of the scenario.
+    pub names: Vec<String>,
+    /// The name of the scenario, and its profile.
+    pub title: [String; 2],
+    /// The settings of all runs beside step and seed, as typed.
+    pub settings: Vec<String>,
+    /// The first seed; the runs at each step have this seed and those after it.
+    pub first_seed: u64,
+    /// The steps on offer, from the finest to the coarsest.
+    pub rungs: Vec<Rung>,
+    /// The number of the step to begin with.
+    pub start: usize,
+    case: Case,
+    memory: Option<u64>,
+}
+
+impl Question {
+    /// A question about a scenario with settings. Where neither these nor the scenario name a preset, runs have
+    /// [`Preset::Fast`]: its choices save time and leave statistics unchanged.
+    ///
+    /// # Errors
+    /// The scenario is invalid, or has no result with a wanted name.
+    pub fn new(
+        source: Source,
+        mut settings: Vec<Setting>,
+        request: Request,
+        memory: Option<u64>,
+    ) -> Result<Self, QuestionError> {
+        let lent = Memory::new(memory);
+        let typed = settings.iter().map(Setting::brief).collect();
+        let case = Case::new(source.clone(), settings.clone(), &lent)?;
+        let scenario = case.scenario().map_err(RunError::from)?;
+        let case = if scenario.document.get("preset").is_some() {
+            case
+        } else {
+            let name = json!(Preset::Fast);
+            settings.insert(0, Setting::of("preset", name, "preset=fast"));
+            Case::new(source, settings, &lent)?
+        };
+        let scenario = case.scenario().map_err(RunError::from)?;
+        let [title, profile] = [&scenario.name, &scenario.profile_name].map(String::clone);
+        let first_seed = scenario.seed;
+        let (rungs, start) = rungs(&scenario);
+        let run = Run::new(scenario).map_err(RunError::from)?;
+        let names = Summary::of(&run).metrics.into_keys();
+        let names = distinct(names.chain(OF_RUNS.map(str::to_owned)));
+        for (k, wanted) in request.wanted.iter().enumerate() {
+            if !names.contains(&wanted.name) {
+                return Err(QuestionError::Unknown {
+                    name: shown(&wanted.name),
+                    known: names.join(", "),
+                    suggestion: suggestion(&wanted.name, names.iter().map(String::as_str)),
+                });
+            }
+            if request.wanted[..k]
+                .iter()
+                .any(|other| other.name == wanted.name)
+            {
+                return Err(QuestionError::Twice(shown(&wanted.name)));
+            }
+        }
+        Ok(Self {
+            request,
+            names,
+            title: [title, profile],
+            settings: typed,
+            first_seed,
+            rungs,
+            start,
+            case,
+            memory,
+        })
+    }
+
+    /// The run with the `k`-th seed at a step.
+    ///
+    /// # Errors
+    /// As [`Case::new`].
+    pub fn case(&self, rung: Rung, k: usize) -> Result<Case, RunError> {
+        let seed = self.first_seed.wrapping_add(k as u64);
+        let set =
+            |key: &str, value: Value| Setting::of(key, value.clone(), &format!("{key}={value}"));
+        let settings = vec![
+            set("time_step_secs", json!(rung.step)),
+            set("coarse_every", json!(rung.coarse_every)),
+            set("seed", json!(seed)),
+        ];
+        self.case.with(settings, &Memory::new(self.memory))
+    }
+
+    /// The files that the scenario is read from.
+    pub fn files(&self) -> impl Iterator<Item = &std::path::Path> {
+        self.case.files()
+    }
+
+    /// The memory that runs share, bytes.
+    pub fn memory(&self) -> Option<u64> {
+        self.memory
+    }
+}
+
+/// The steps on offer, from the finest to the coarsest, and the place of the scenario's own step among them: half of it,
+/// a quarter of it, and so on, and about twice the step if that is stable. All divide the time between coarse frames.
+fn rungs(scenario: &Scenario) -> (Vec<Rung>, usize) {
+    let clock = scenario.scene.clock;
+    let (own, coarse) = (clock.coarse_every(), clock.coarse_step());
+    let rung = |coarse_every: u32| Rung {
+        step: coarse / f64::from(coarse_every),
+        coarse_every,
+    };
+    let finer = (1..=HALVINGS).rev().map(|k| rung(own << k));
+    let mut rungs: Vec<Rung> = finer.filter(|r| r.step >= SHORTEST_TIME_STEP).collect();
+    let start = rungs.len();
+    rungs.push(Rung {
+        step: clock.time_step(),
+        coarse_every: own,
+    });
+    let twice = rung(own.div_ceil(2));
+    let stable = stability::time_step(&scenario.scene);
+    if own > 1 && stable.is_some_and(|longest| twice.step <= longest) {
+        rungs.push(twice);
+    }
+    (rungs, start)
+}

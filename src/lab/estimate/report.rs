@@ -1,0 +1,179 @@
+//! The answer as text, Markdown and CSV.
+
+use super::answer::{ABOUT, Answer, Row};
+use super::compared::digits;
+use crate::analysis::round;
+use crate::lab::error::LabError;
+use crate::output::table::{Columns, Table};
+
+/// A row at one of its steps.
+type Step<'a> = (&'a Row, &'a super::answer::AtStep);
+
+impl Answer {
+    /// For a terminal.
+    pub fn text(&self) -> String {
+        self.lines(Table::text)
+    }
+
+    /// As Markdown.
+    pub fn markdown(&self) -> String {
+        self.lines(Table::markdown)
+    }
+
+    fn lines(&self, table: fn(&Table) -> String) -> String {
+        let settings = match self.settings.is_empty() {
+            true => String::new(),
+            false => format!(", {}", self.settings.join(", ")),
+        };
+        let mut text = format!(
+            "{} ({}{settings}), {} % confidence. {ABOUT}\n\n",
+            self.scenario,
+            self.profile,
+            round::brief(100.0 * self.confidence),
+        );
+        text += &table(&self.results_table());
+        text += "\nMeans at each step (± standard deviation of runs):\n\n";
+        text += &table(&self.steps_table());
+        text += &format!("\n{}\n", self.costs());
+        for (name, share) in self.runs.notable() {
+            text += &format!("{} of {} runs {name}: {share}.\n", share.count, share.of);
+        }
+        for row in self.results.iter().filter(|row| row.missing > 0) {
+            text += &format!(
+                "{}: {} of {} runs have no value; the results are those of the others.\n",
+                row.name, row.missing, self.runs.all
+            );
+        }
+        if let Some(why) = &self.stopped {
+            let missed = self.results.iter().filter(|row| !row.is_reached);
+            let missed: Vec<String> = missed
+                .map(|row| format!("{} to {}", row.name, row.percent()))
+                .collect();
+            if !missed.is_empty() {
+                text += &format!("Not reached, as {why}: {}.\n", missed.join(", "));
+            }
+        }
+        text
+    }
+
+    fn results_table(&self) -> Table {
+        Table::of(&self.results)
+            .column("result", |row| row.name.as_str())
+            .column("value", |row| row.written(row.reached.value))
+            .column("±", |row| row.written(row.reached.error))
+            .column("± %", Row::percent)
+            .column("seeds", |row| row.written(row.reached.seeds))
+            .column("step", |row| row.written(row.reached.step))
+            .column("wanted", |row| row.wanted.as_str())
+            .column("reached", |row| ["no", "yes"][usize::from(row.is_reached)])
+            .column("order", |row| format!("{:.1}", row.order))
+            .table()
+    }
+
+    fn steps(&self) -> Vec<Step<'_>> {
+        let rows = self.results.iter();
+        rows.flat_map(|row| row.steps.iter().map(move |step| (row, step)))
+            .collect()
+    }
+
+    fn steps_table(&self) -> Table {
+        let rows = self.steps();
+        by_step(&rows)
+            .column("mean", |(row, at)| match at.deviation {
+                Some(deviation) => format!("{} ± {}", row.written(at.mean), row.written(deviation)),
+                None => row.written(at.mean),
+            })
+            .column("error of the step", |(row, at)| {
+                row.written(at.error_of_step)
+            })
+            .table()
+    }
+
+    /// What the runs cost, and what the default settings would have cost.
+    fn costs(&self) -> String {
+        let mut text = format!(
+            "{} runs, {} s of computing on one core.",
+            self.runs.all,
+            round::brief(self.secs)
+        );
+        for row in &self.results {
+            let default = row.default;
+            let error = row.written(default.error_of_step);
+            text += &match default.runs.zip(default.secs) {
+                Some((runs, secs)) => format!(
+                    " The default step of 0.02 s has an error of {error} in {}: its runs alone, without those that \
+                     show this error, would have been {} and {} s.",
+                    row.name,
+                    runs.ceil(),
+                    round::brief(secs)
+                ),
+                None => format!(
+                    " The default step of 0.02 s has an error of {error} in {}: no number of runs gives ± {}.",
+                    row.name,
+                    row.written(row.reached.error)
+                ),
+            };
+        }
+        text
+    }
+
+    /// One line per result.
+    ///
+    /// # Errors
+    /// The table cannot be written.
+    pub fn csv(&self) -> Result<Vec<u8>, LabError> {
+        let runs = |row: &Row| row.steps.iter().map(|at| at.runs).sum::<usize>();
+        let finest = |row: &Row| row.steps.first().map(|at| at.step);
+        let columns = Table::of(&self.results)
+            .column("result", |row| row.name.as_str())
+            .column("value", |row| row.reached.value)
+            .column("error", |row| row.reached.error)
+            .column("seeds", |row| row.reached.seeds)
+            .column("step", |row| row.reached.step)
+            .column("n", runs)
+            .column("wanted", |row| row.wanted.as_str())
+            .column("reached", |row| row.is_reached)
+            .column("confidence", |_| self.confidence)
+            .column("finest_step_secs", finest)
+            .column("order", |row| row.order)
+            .column("missing", |row| row.missing);
+        Ok(columns.table().csv()?)
+    }
+
+    /// One line per result and step.
+    ///
+    /// # Errors
+    /// The table cannot be written.
+    pub fn steps_csv(&self) -> Result<Vec<u8>, LabError> {
+        let rows = self.steps();
+        let columns = by_step(&rows)
+            .column("mean", |(_, at)| at.mean)
+            .column("deviation", |(_, at)| at.deviation)
+            .column("error_of_step", |(_, at)| at.error_of_step);
+        Ok(columns.table().csv()?)
+    }
+}
+
+/// The first columns of tables by step.
+fn by_step<'r>(rows: &'r [Step<'r>]) -> Columns<'r, Step<'r>> {
+    Table::of(rows)
+        .column("result", |(row, _)| row.name.as_str())
+        .column("step_secs", |(_, at)| at.step)
+        .column("runs", |(_, at)| at.runs)
+}
+
+impl Row {
+    /// A number of this result with as many decimals as its error has in two digits.
+    pub fn written(&self, number: f64) -> String {
+        digits(number, self.reached.error)
+    }
+
+    /// The half width in percent of the value.
+    fn percent(&self) -> String {
+        let part = 100.0 * self.reached.error / self.reached.value.abs();
+        match part.is_finite() {
+            true => format!("{} %", round::brief(part)),
+            false => "–".to_owned(),
+        }
+    }
+}

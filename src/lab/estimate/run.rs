@@ -1,0 +1,315 @@
+//! The runs of an estimate, round by round, until the errors are as small as asked for.
+
+use std::time::Instant;
+
+use rayon::current_num_threads;
+
+use super::plan::{Goal, Offer, PILOT, further};
+use super::question::{Question, Rung};
+use super::series::{Reached, Series};
+use crate::lab::error::LabError;
+use crate::lab::jobs::each;
+use crate::lab::sweep::number;
+use crate::runs::case::{Case, RunResult};
+use crate::runs::drive::End;
+use crate::runs::error::RunError;
+use crate::runs::job::{self, Job, Listener};
+use crate::runs::store::Store;
+
+/// The runs at one time step, in the order of their seeds.
+#[derive(Debug, Clone)]
+pub struct Level {
+    /// The step.
+    pub rung: Rung,
+    /// The results; the error message of runs that failed.
+    pub results: Vec<Result<RunResult, String>>,
+    /// The expected time of a run, seconds on one core.
+    pub expected_secs: f64,
+}
+
+/// The results after a round.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Look {
+    /// The number of runs at each step.
+    pub runs: Vec<usize>,
+    /// What is reached for each wanted result; `None` before it has two values at one step.
+    pub reached: Vec<Option<Reached>>,
+}
+
+/// All runs of an estimate.
+pub struct Runs<'a> {
+    /// The question.
+    pub question: &'a Question,
+    /// The runs at each step on offer, from the finest to the coarsest.
+    pub levels: Vec<Level>,
+    /// The state after each round.
+    pub looks: Vec<Look>,
+    /// Why no more runs were made, if an error is larger than asked for.
+    pub stopped: Option<String>,
+}
+
+/// Runs the question's scenario until all errors are as small as asked for, or a limit is reached. Finished runs are
+/// taken from the store.
+///
+/// # Errors
+/// Results cannot be stored, a run is invalid, or a wanted result has no value.
+pub fn run<'a>(
+    question: &'a Question,
+    store: &Store,
+    listener: &dyn Listener,
+) -> Result<Runs<'a>, LabError> {
+    let begin = Instant::now();
+    let mut runs = Runs::none(question)?;
+    let mut wanted = vec![0; runs.levels.len()];
+    wanted[question.start..].fill(PILOT);
+    loop {
+        let left = runs.cut(&mut wanted, begin.elapsed().as_secs_f64());
+        runs.make(&wanted, store, listener)?;
+        runs.look()?;
+        listener.notes(&runs.progress());
+        let Some(further) = further(&runs.goals(), &runs.offers(), question.request.confidence)
+        else {
+            return Ok(runs);
+        };
+        if let Some(limit) = left {
+            runs.stopped = Some(limit);
+            return Ok(runs);
+        }
+        wanted
+            .iter_mut()
+            .zip(further)
+            .for_each(|(all, more)| *all += more);
+    }
+}
+
+impl<'a> Runs<'a> {
+    /// No runs yet.
+    pub(super) fn none(question: &'a Question) -> Result<Self, LabError> {
+        let level = |&rung: &Rung| {
+            let case = question.case(rung, 0);
+            Ok(Level {
+                rung,
+                results: Vec::new(),
+                expected_secs: case.map_err(|error| failed(question, error))?.expected_secs,
+            })
+        };
+        let levels: Result<_, LabError> = question.rungs.iter().map(level).collect();
+        Ok(Self {
+            question,
+            levels: levels?,
+            looks: Vec::new(),
+            stopped: None,
+        })
+    }
+
+    /// Reduces the numbers of runs to what the limits allow. Returns the limit that is then reached, if one is.
+    fn cut(&self, wanted: &mut [usize], elapsed: f64) -> Option<String> {
+        let limits = self.question.request.limits;
+        let done: Vec<usize> = self
+            .levels
+            .iter()
+            .map(|level| level.results.len())
+            .collect();
+        let more = |wanted: &[usize]| -> usize {
+            wanted.iter().zip(&done).map(|(all, done)| all - done).sum()
+        };
+        // The largest numbers that are allowed in these proportions, then one more each while there is room.
+        let scale = |wanted: &mut [usize], room: usize| {
+            let asked = more(wanted).max(1);
+            let full = wanted.to_vec();
+            for (all, done) in wanted.iter_mut().zip(&done) {
+                *all = done + (*all - done) * room / asked;
+            }
+            let mut left = room - more(wanted);
+            for (all, full) in wanted.iter_mut().zip(full) {
+                let added = usize::from(*all < full && left > 0);
+                *all += added;
+                left -= added;
+            }
+        };
+        let free = limits.runs.saturating_sub(done.iter().sum());
+        let asked = more(wanted);
+        let mut reached = None;
+        if asked > free {
+            scale(wanted, free);
+            reached = Some(format!("at most {} runs were allowed", limits.runs));
+        }
+        let Some(secs) = limits.secs else {
+            return reached;
+        };
+        let measured = self.measured_factor();
+        let levels = self.levels.iter().zip(wanted.iter()).zip(&done);
+        let due: f64 = levels
+            .map(|((level, all), done)| (all - done) as f64 * level.expected_secs * measured)
+            .sum::<f64>()
+            / current_num_threads() as f64;
+        if done.iter().any(|&runs| runs > 0) && elapsed + due > secs {
+            let part = ((secs - elapsed) / due).clamp(0.0, 1.0);
+            scale(wanted, (more(wanted) as f64 * part) as usize);
+            reached = Some(format!("at most {} minutes were allowed", secs / 60.0));
+        }
+        reached
+    }
+
+    /// The measured time of the runs so far, over the expected time; 1 without runs.
+    pub fn measured_factor(&self) -> f64 {
+        let finished = self.levels.iter().flat_map(|level| {
+            let finished = level.results.iter().flatten();
+            finished.map(|result| [result.wall_secs, level.expected_secs])
+        });
+        let [wall, expected] = finished.fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+        if expected > 0.0 { wall / expected } else { 1.0 }
+    }
+
+    /// The time of all runs, seconds on one core.
+    pub fn measured_secs(&self) -> f64 {
+        let results = self.levels.iter().flat_map(|level| &level.results);
+        results.flatten().map(|result| result.wall_secs).sum()
+    }
+
+    /// Makes runs until there are these many at each step.
+    pub(super) fn make(
+        &mut self,
+        wanted: &[usize],
+        store: &Store,
+        listener: &dyn Listener,
+    ) -> Result<(), LabError> {
+        let question = self.question;
+        let places = self.levels.iter().zip(wanted).enumerate();
+        let places = places
+            .flat_map(|(k, (level, &all))| (level.results.len()..all).map(move |seed| (k, seed)));
+        let places: Vec<(usize, usize)> = places.collect();
+        let cases = each(places.len(), |index| {
+            let (k, seed) = places[index];
+            question.case(question.rungs[k], seed)
+        })?;
+        let cases: Result<Vec<Case>, RunError> = cases.into_iter().collect();
+        let cases = cases.map_err(|error| failed(question, error))?;
+        let jobs = cases.iter().zip(&places).map(|(case, &(k, _))| {
+            let step = question.rungs[k].step;
+            case.job(format!("step {step:.4} s, seed {}", case.seed))
+        });
+        let jobs: Vec<Job> = jobs.collect();
+        job::run(&jobs, store, question.memory(), listener)?;
+        for (case, (k, _)) in cases.iter().zip(places) {
+            let failure = || {
+                let failure = store.failure(&case.key);
+                failure.map_or("no result".to_owned(), |failure| failure.message)
+            };
+            let result = store.result(&case.key).unwrap_or_default();
+            self.levels[k].results.push(result.ok_or_else(failure));
+        }
+        Ok(())
+    }
+
+    /// The values of the wanted result with this number.
+    pub fn series(&self, wanted: usize) -> Series {
+        let name = &self.question.request.wanted[wanted].name;
+        let value = |result: &Result<RunResult, String>| {
+            let result = result.as_ref().ok()?;
+            number(result, name)
+        };
+        let values = self.levels.iter();
+        Series {
+            steps: self.levels.iter().map(|level| level.rung.step).collect(),
+            values: values
+                .map(|level| level.results.iter().map(value).collect())
+                .collect(),
+        }
+    }
+
+    /// The steps with the number of their runs.
+    pub fn offers(&self) -> Vec<Offer> {
+        let offer = |level: &Level| Offer {
+            step: level.rung.step,
+            secs: level.expected_secs,
+            runs: level.results.len(),
+        };
+        self.levels.iter().map(offer).collect()
+    }
+
+    /// The wanted results that have values.
+    pub fn goals(&self) -> Vec<Goal> {
+        let wanted = self.question.request.wanted.iter().enumerate();
+        let goal = |(k, wanted): (usize, &super::Wanted)| {
+            Some(Goal {
+                digest: self.series(k).digest()?,
+                tolerance: wanted.error,
+            })
+        };
+        wanted.filter_map(goal).collect()
+    }
+
+    /// Notes what is reached.
+    fn look(&mut self) -> Result<(), LabError> {
+        let confidence = self.question.request.confidence;
+        let count = self.question.request.wanted.len();
+        let digests: Vec<_> = (0..count).map(|k| self.series(k).digest()).collect();
+        if let Some(k) = digests.iter().position(Option::is_none) {
+            return Err(LabError::Data(self.without_values(k)));
+        }
+        let reached = digests.iter().flatten();
+        self.looks.push(Look {
+            runs: self
+                .levels
+                .iter()
+                .map(|level| level.results.len())
+                .collect(),
+            reached: reached
+                .map(|digest| Some(digest.reached(confidence).0))
+                .collect(),
+        });
+        Ok(())
+    }
+
+    /// Why a wanted result has no values.
+    fn without_values(&self, wanted: usize) -> String {
+        let name = &self.question.request.wanted[wanted].name;
+        let results = self.levels.iter().flat_map(|level| &level.results);
+        let failure = results.clone().find_map(|result| result.as_ref().err());
+        let all = results.clone().count();
+        let ended = |end| {
+            results
+                .clone()
+                .flatten()
+                .filter(|r| r.summary.end == Some(end))
+                .count()
+        };
+        let why = failure.map_or_else(
+            || {
+                format!(
+                    "{} ended because no agent arrived for some time, {} at the scenario's duration",
+                    ended(End::Idle),
+                    ended(End::Duration)
+                )
+            },
+            |message| format!("the first error is: {message}"),
+        );
+        format!("{name}: fewer than two of {all} runs at the same step have a value; {why}")
+    }
+
+    /// The state after the last round, in one line.
+    fn progress(&self) -> String {
+        let Some(look) = self.looks.last() else {
+            return String::new();
+        };
+        let wanted = self.question.request.wanted.iter().zip(&look.reached);
+        let results = wanted.filter_map(|(wanted, reached)| {
+            let reached = (*reached)?;
+            let part = 100.0 * reached.error / reached.value.abs();
+            Some(format!(
+                "{} {:.5} ± {:.5} ({part:.2} %), wanted {}",
+                wanted.name, reached.value, reached.error, wanted.error
+            ))
+        });
+        let runs: usize = look.runs.iter().sum();
+        format!(
+            "after {runs} runs: {}",
+            results.collect::<Vec<_>>().join("; ")
+        )
+    }
+}
+
+fn failed(question: &Question, error: RunError) -> LabError {
+    LabError::of(question.title[0].clone(), error)
+}

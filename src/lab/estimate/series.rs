@@ -1,0 +1,122 @@
+//! The values of one measurement, and what they say about its limit.
+
+use serde::{Deserialize, Serialize};
+
+use super::limit::{Level, Limit};
+use super::wanted::Tolerance;
+use crate::analysis::statistics::{MeanStd, student};
+
+/// The values of one measurement at each step, from the finest to the coarsest, in the order of the seeds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// The steps, seconds.
+    pub steps: Vec<f64>,
+    /// The values at each step; `None` for runs without one.
+    pub values: Vec<Vec<Option<f64>>>,
+}
+
+/// A value with its errors: half widths of confidence intervals.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Reached {
+    /// The value.
+    pub value: f64,
+    /// The half width from the seeds and the step together.
+    pub error: f64,
+    /// That from the seeds alone.
+    pub seeds: f64,
+    /// That from the step alone.
+    pub step: f64,
+}
+
+/// How much wider intervals are than Student's t says, because the number of runs depends on the runs: this over the
+/// degrees of freedom. Found by resampling (`sandbox accuracy coverage`).
+const LOOKS: f64 = 0.0;
+
+/// The runs of a measurement in short: means and one variance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Digest {
+    /// The levels with values.
+    pub levels: Vec<Level>,
+    /// The variance of single runs, over all levels.
+    pub variance: f64,
+    /// Its degrees of freedom.
+    degrees: usize,
+}
+
+impl Series {
+    /// The values in short; `None` with fewer than two values at any step.
+    pub fn digest(&self) -> Option<Digest> {
+        let (mut levels, mut squares, mut degrees) = (Vec::new(), 0.0, 0);
+        for (&step, values) in self.steps.iter().zip(&self.values) {
+            let values: Vec<f64> = values.iter().flatten().copied().collect();
+            let Some(of) = MeanStd::of(&values) else {
+                continue;
+            };
+            let (runs, mean) = (of.count, of.mean);
+            levels.push(Level { step, runs, mean });
+            degrees += runs - 1;
+            squares += of.std().map_or(0.0, |std| (runs - 1) as f64 * std * std);
+        }
+        (degrees > 0).then(|| Digest {
+            levels,
+            variance: squares / degrees as f64,
+            degrees,
+        })
+    }
+}
+
+impl Digest {
+    /// The half width of a confidence interval, in standard errors.
+    pub fn width(&self, confidence: f64) -> f64 {
+        let degrees = self.degrees as f64;
+        student(self.degrees, confidence).unwrap_or(f64::INFINITY) * (1.0 + LOOKS / degrees)
+    }
+
+    /// The value in the limit of fine steps with its errors.
+    pub fn reached(&self, confidence: f64) -> (Reached, Limit) {
+        let limit = Limit::of(&self.levels, self.variance);
+        let width = self.width(confidence);
+        let of_step = (limit.variance - limit.from_seeds).max(0.0);
+        let reached = Reached {
+            value: limit.value,
+            error: width * limit.variance.sqrt(),
+            seeds: width * limit.from_seeds.sqrt(),
+            step: width * of_step.sqrt(),
+        };
+        (reached, limit)
+    }
+
+    /// By how much the variance of the limit exceeds what the error allows, as a logarithm; 0 if it does not.
+    pub fn excess(&self, tolerance: Tolerance, confidence: f64) -> f64 {
+        let limit = Limit::of(&self.levels, self.variance);
+        let allowed = tolerance.of(limit.value) / self.width(confidence);
+        (limit.variance.sqrt() / allowed).ln().max(0.0)
+    }
+
+    /// A digest of these numbers of runs at each of `steps`, whose means are as expected and whose spread is known.
+    pub fn afresh(&self, expected: &Limit, steps: &[f64], counts: &[usize]) -> Self {
+        let degrees = counts.iter().map(|runs| runs.saturating_sub(1)).sum();
+        let none = Self {
+            levels: Vec::new(),
+            degrees,
+            ..self.clone()
+        };
+        none.with(expected, steps, counts)
+    }
+
+    /// The same after further runs at each of `steps`, whose means are as expected.
+    pub fn with(&self, expected: &Limit, steps: &[f64], further: &[usize]) -> Self {
+        let mut after = self.clone();
+        for (&step, &runs) in steps.iter().zip(further).filter(|(_, runs)| **runs > 0) {
+            match after.levels.iter_mut().find(|level| level.step == step) {
+                Some(level) => level.runs += runs,
+                None => {
+                    let mean = expected.at(step);
+                    after.levels.push(Level { step, runs, mean });
+                }
+            }
+        }
+        after.levels.sort_by(|a, b| a.step.total_cmp(&b.step));
+        after
+    }
+}

@@ -1,0 +1,463 @@
+//! Results with the errors asked for: the limit of fine steps against integrals, intervals against drawn data, and the
+//! command.
+
+use std::fs;
+use std::path::Path;
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use sandbox::lab::estimate::{
+    Digest, Goal, Level, Limit, Offer, Series, Tolerance, Wanted, further, predicted,
+};
+use serde_json::Value;
+
+use crate::common::program::{json, refused, run, run_in, stderr};
+
+/// The orders, the sizes of errors with their weights, as docs/accuracy.md gives them.
+const ORDERS: [f64; 9] = [0.4, 0.5, 0.63, 0.79, 1.0, 1.26, 1.58, 2.0, 2.5];
+const SIZES: [(f64, f64); 3] = [(0.2, 0.4), (0.6, 0.4), (3.0, 0.2)];
+
+fn levels(of: &[(f64, usize, f64)]) -> Vec<Level> {
+    let level = |&(step, runs, mean): &(f64, usize, f64)| Level { step, runs, mean };
+    of.iter().map(level).collect()
+}
+
+/// Mean and variance of the limit by integration over the error β: given β, the limit is normal around the weighted
+/// mean of the differences. `apart` adds the case that the last level is too long.
+fn by_quadrature(levels: &[Level], sigma: f64, apart: bool) -> [f64; 2] {
+    let mut sums = [0.0; 3];
+    let mut add = |used: &[Level], factor: f64| {
+        for order in ORDERS {
+            for (size, weight) in SIZES {
+                let (steps, size) = (4000, size * sigma);
+                for k in 0..=steps {
+                    let beta = size * 12.0 * (f64::from(k) / f64::from(steps) - 0.5) * 2.0;
+                    let x = |level: &Level| (level.step / 0.02).powf(order);
+                    let n: f64 = used.iter().map(|l| l.runs as f64).sum();
+                    let mean = used
+                        .iter()
+                        .map(|l| l.runs as f64 * (l.mean - beta * x(l)))
+                        .sum::<f64>()
+                        / n;
+                    let rest: f64 = used
+                        .iter()
+                        .map(|l| l.runs as f64 * (l.mean - beta * x(l) - mean).powi(2))
+                        .sum();
+                    // The integral over the limit, without factors that all cases share.
+                    let spread = used
+                        .iter()
+                        .map(|l| (l.runs as f64 / (std::f64::consts::TAU * sigma * sigma)).sqrt())
+                        .product::<f64>()
+                        * (sigma * sigma / n).sqrt();
+                    let likely = spread * (-0.5 * rest / (sigma * sigma)).exp();
+                    let prior = (-0.5 * (beta / size).powi(2)).exp();
+                    let w = factor * weight * likely * prior / f64::from(steps) * 24.0;
+                    let variance = sigma * sigma / n;
+                    sums[0] += w;
+                    sums[1] += w * mean;
+                    sums[2] += w * (variance + mean * mean);
+                }
+            }
+        }
+    };
+    match apart {
+        true => {
+            add(levels, 0.9);
+            add(&levels[..levels.len() - 1], 0.1 / (20.0 * sigma));
+        }
+        false => add(levels, 1.0),
+    }
+    let mean = sums[1] / sums[0];
+    [mean, sums[2] / sums[0] - mean * mean]
+}
+
+#[test]
+fn the_limit_agrees_with_integrals_over_errors_orders_and_sizes() {
+    let two = levels(&[(0.01, 7, 0.3), (0.02, 5, 0.9)]);
+    let three = levels(&[(0.005, 4, -0.2), (0.01, 9, 0.5), (0.025, 6, 1.1)]);
+    let far = levels(&[(0.01, 8, 0.1), (0.02, 8, 0.4), (0.04, 6, 9.0)]);
+    for (levels, apart) in [(two, false), (three, true), (far, true)] {
+        let sigma = 0.8;
+        let limit = Limit::of(&levels, sigma * sigma);
+        let [mean, variance] = by_quadrature(&levels, sigma, apart);
+        assert!((limit.value - mean).abs() < 1e-6, "{} {mean}", limit.value);
+        let unmodeled = 0.125 * limit.error_at(levels[0].step);
+        let expected = variance + unmodeled.powi(2);
+        assert!(
+            (limit.variance - expected).abs() < 1e-6,
+            "{} {expected}",
+            limit.variance
+        );
+    }
+}
+
+#[test]
+fn the_limit_moves_and_scales_with_the_values() {
+    let at = |factor: f64, off: f64| {
+        let of = [(0.01, 7, 0.3), (0.02, 5, 0.9)].map(|(h, n, m)| (h, n, factor * m + off));
+        Limit::of(&levels(&of), (factor * 0.5).powi(2))
+    };
+    let (one, other) = (at(1.0, 0.0), at(40.0, 7.0));
+    assert!((other.value - (40.0 * one.value + 7.0)).abs() < 1e-9);
+    assert!((other.variance.sqrt() / one.variance.sqrt() - 40.0).abs() < 1e-9);
+}
+
+#[test]
+fn many_exact_runs_give_the_limit_of_any_order() {
+    for order in [0.5, 1.0, 2.0] {
+        let of = [0.0025, 0.005, 0.01, 0.02]
+            .map(|step: f64| (step, 1_000_000, 5.0 + 0.3 * (step / 0.02).powf(order)));
+        let limit = Limit::of(&levels(&of), 0.01);
+        let off = (limit.value - 5.0).abs();
+        assert!(
+            off < 2.0 * limit.variance.sqrt() && off < 0.02,
+            "{order}: {}",
+            limit.value
+        );
+    }
+}
+
+/// A value from the normal distribution, by Box and Muller.
+fn normal(rng: &mut ChaCha8Rng) -> f64 {
+    let (u, v): (f64, f64) = (rng.random(), rng.random());
+    (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+}
+
+#[test]
+fn intervals_hold_the_limit_of_drawn_data_as_often_as_they_say() {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let (draws, mut held) = (4000, [0; 2]);
+    for _ in 0..draws {
+        let order = ORDERS[rng.random_range(0..9)];
+        let size = SIZES[[0, 0, 1, 1, 2][rng.random_range(0..5)]].0;
+        let beta = size * normal(&mut rng);
+        let steps = vec![0.0125, 0.025, 0.05];
+        let values = steps.iter().map(|step: &f64| {
+            let mean = beta * (step / 0.02).powf(order);
+            (0..8)
+                .map(|_| Some(100.0 + mean + normal(&mut rng)))
+                .collect()
+        });
+        let values = values.collect();
+        let digest = Series { steps, values }.digest().unwrap();
+        for (held, confidence) in held.iter_mut().zip([0.8, 0.95]) {
+            let reached = digest.reached(confidence).0;
+            *held += usize::from((reached.value - 100.0).abs() <= reached.error);
+        }
+    }
+    // Four standard deviations of the counts on either side; the share of the error that no order explains widens.
+    let [eighty, ninety_five] = held.map(|held| held as f64 / f64::from(draws));
+    assert!((0.775..0.85).contains(&eighty), "{eighty}");
+    assert!((0.936..0.975).contains(&ninety_five), "{ninety_five}");
+}
+
+fn digest(values: &[(f64, &[f64])]) -> Digest {
+    let series = Series {
+        steps: values.iter().map(|(step, _)| *step).collect(),
+        values: values
+            .iter()
+            .map(|(_, v)| v.iter().copied().map(Some).collect())
+            .collect(),
+    };
+    series.digest().unwrap()
+}
+
+fn offers(runs: [usize; 3]) -> Vec<Offer> {
+    let offer = |(step, runs)| Offer {
+        step,
+        secs: 0.1 / step,
+        runs,
+    };
+    [0.0125, 0.025, 0.05]
+        .into_iter()
+        .zip(runs)
+        .map(offer)
+        .collect()
+}
+
+#[test]
+fn no_runs_are_added_once_the_error_is_small_enough() {
+    let digest = digest(&[
+        (0.025, &[9.0, 11.0, 10.0, 10.5, 9.5]),
+        (0.05, &[10.0, 9.2, 10.8, 10.1, 9.9]),
+    ]);
+    let reached = digest.reached(0.95).0;
+    for (factor, is_done) in [(1.01, true), (0.99, false)] {
+        let tolerance = Tolerance::Absolute(factor * reached.error);
+        let goal = Goal {
+            digest: digest.clone(),
+            tolerance,
+        };
+        let further = further(&[goal], &offers([0, 5, 5]), 0.95);
+        assert_eq!(further.is_none(), is_done, "{further:?}");
+    }
+}
+
+#[test]
+fn smaller_errors_are_expected_to_need_more_runs() {
+    let digest = digest(&[
+        (0.025, &[9.0, 11.0, 10.0, 10.5, 9.5]),
+        (0.05, &[10.0, 9.2, 10.8, 10.1, 9.9]),
+    ]);
+    let runs = |part: f64| -> usize {
+        let tolerance = Tolerance::Relative(part);
+        let goal = Goal {
+            digest: digest.clone(),
+            tolerance,
+        };
+        predicted(&[goal], &offers([0, 0, 0]), 1, 0.95).iter().sum()
+    };
+    let counts = [0.2, 0.1, 0.05, 0.02].map(runs);
+    assert_eq!(counts[0], 10, "the first round is enough");
+    assert!(
+        counts.is_sorted() && counts[3] > 4 * counts[1],
+        "{counts:?}"
+    );
+}
+
+#[test]
+fn errors_are_read_as_parts_and_as_numbers() {
+    let read = |text: &str| text.parse::<Wanted>();
+    assert_eq!(read("flow=2%").unwrap().error, Tolerance::Relative(0.02));
+    assert_eq!(
+        read(" flow = 0.05").unwrap(),
+        Wanted {
+            name: "flow".into(),
+            error: Tolerance::Absolute(0.05)
+        }
+    );
+    for wrong in [
+        "flow",
+        "flow=",
+        "flow=x%",
+        "flow=0%",
+        "flow=-1",
+        "flow=inf",
+        "flow=NaN%",
+    ] {
+        assert!(read(wrong).is_err(), "{wrong}");
+    }
+}
+
+/// A small evacuation; `more` follows.
+fn estimate<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let small = [
+        "estimate",
+        "evacuation",
+        "--out",
+        out,
+        "--json",
+        "--set",
+        "grids.0.columns=7",
+        "--set",
+        "grids.0.rows=7",
+        "--set",
+        "measurements.1.flow_of_first.arrivals=30",
+    ];
+    [&small[..], more].concat()
+}
+
+/// The answer without times.
+fn answer(output: &std::process::Output) -> Value {
+    let mut answer = json(output);
+    answer["estimate"]["secs"] = Value::Null;
+    for row in answer["estimate"]["results"].as_array_mut().unwrap() {
+        row["default"]["secs"] = Value::Null;
+    }
+    answer
+}
+
+fn cases(folder: &Path) -> usize {
+    fs::read_dir(folder.join("cases")).unwrap().count()
+}
+
+#[test]
+fn an_estimate_is_the_same_on_any_number_of_threads_and_goes_on_where_it_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let wanted = ["--error", "flow_per_s=4%", "--error", "time_secs=4%"];
+    let mut answers = Vec::new();
+    for (out, threads) in [("one", "1"), ("two", "2")] {
+        let more = [&wanted[..], &["--threads", threads]].concat();
+        let output = run_in(folder.path(), &estimate(out, &more));
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        answers.push(answer(&output));
+    }
+    assert_eq!(answers[0], answers[1]);
+    // Interrupted after a few runs by a limit, it keeps them and goes on to the same answer.
+    let more = [&wanted[..], &["--most-runs", "7"]].concat();
+    let cut = run_in(folder.path(), &estimate("cut", &more));
+    assert_eq!(cut.status.code(), Some(1));
+    assert!(
+        stderr(&cut).contains("at most 7 runs were allowed"),
+        "{}",
+        stderr(&cut)
+    );
+    assert!(cases(&folder.path().join("cut")) <= 7);
+    let output = run_in(folder.path(), &estimate("cut", &wanted));
+    assert_eq!(answer(&output), answers[0]);
+    assert!(
+        stderr(&output).contains("6 kept from before"),
+        "{}",
+        stderr(&output)
+    );
+    let all = answers[0]["estimate"]["runs"]["all"].as_u64().unwrap();
+    assert_eq!(cases(&folder.path().join("cut")), all as usize);
+}
+
+#[test]
+fn an_answer_is_that_of_its_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run_in(
+        folder.path(),
+        &estimate("out", &["--error", "time_secs=3%"]),
+    );
+    let answer = &answer(&output)["estimate"];
+    let row = &answer["results"][0];
+    assert_eq!(row["is_reached"], true);
+    // A run by itself has the value that the answer lists for its seed and step.
+    let mut squares = 0.0;
+    let (mut found, mut degrees) = (Vec::new(), 0);
+    for at in row["steps"].as_array().unwrap() {
+        let step = at["step"].as_f64().unwrap();
+        let values: Vec<f64> = at["values"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|v| v.as_f64().unwrap())
+            .collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        squares += values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
+        degrees += values.len() - 1;
+        found.push(Level {
+            step,
+            runs: values.len(),
+            mean,
+        });
+        let every = (0.1 / step).round().to_string();
+        let settings = [
+            format!("time_step_secs={step}"),
+            format!("coarse_every={every}"),
+            "grids.0.columns=7".to_owned(),
+            "grids.0.rows=7".to_owned(),
+        ];
+        let set: Vec<&str> = settings
+            .iter()
+            .flat_map(|setting| ["--set", setting])
+            .collect();
+        let alone = run(&[
+            &["evacuation", "--preset", "fast", "--seed", "2", "--json"],
+            &set[..],
+        ]
+        .concat());
+        assert_eq!(
+            json(&alone)["time_secs"].as_f64(),
+            Some(values[1]),
+            "{}",
+            stderr(&alone)
+        );
+    }
+    let limit = Limit::of(&found, squares / degrees as f64);
+    let value = row["value"].as_f64().unwrap();
+    assert!((value - limit.value).abs() < 1e-9 * value);
+}
+
+#[test]
+fn a_result_without_spread_is_exact() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run_in(
+        folder.path(),
+        &estimate("out", &["--error", "evacuated=0.001"]),
+    );
+    let row = &answer(&output)["estimate"]["results"][0];
+    assert_eq!(row["value"], 49.0);
+    assert!(row["error"].as_f64().unwrap() < 1e-6, "{row}");
+}
+
+#[test]
+fn impossible_questions_are_refused_before_the_first_run() {
+    let unknown = ["no such result", "flow_per_s", "did you mean"];
+    refused(
+        &["estimate", "evacuation", "--error", "flow_pers=1%"],
+        2,
+        &unknown,
+    );
+    refused(
+        &["estimate", "evacuation", "--error", "flow_per_s=0%"],
+        2,
+        &["must be above 0"],
+    );
+    refused(
+        &["estimate", "evacuation", "--error", "flow_per_s"],
+        2,
+        &["such as flow_per_s=1%"],
+    );
+    refused(&["estimate", "evacuation"], 2, &["--error"]);
+    refused(
+        &["estimate", "evacuasion", "--error", "flow_per_s=1%"],
+        2,
+        &["evacuasion"],
+    );
+    let twice = [
+        "estimate",
+        "evacuation",
+        "--error",
+        "flow_per_s=1%",
+        "--error",
+        "flow_per_s=2%",
+    ];
+    refused(&twice, 2, &["given twice"]);
+    let sure = [
+        "estimate",
+        "evacuation",
+        "--error",
+        "flow_per_s=1%",
+        "--confidence",
+        "100",
+    ];
+    refused(&sure, 2, &["between 50 and 99.99"]);
+}
+
+#[test]
+fn an_error_that_cannot_be_reached_is_named_with_what_was_reached() {
+    let folder = tempfile::tempdir().unwrap();
+    let more = ["--error", "flow_per_s=0.000000001%", "--most-runs", "12"];
+    let output = run_in(folder.path(), &estimate("out", &more));
+    assert_eq!(output.status.code(), Some(1));
+    let answer = &answer(&output)["estimate"];
+    assert_eq!(answer["runs"]["all"], 12);
+    assert_eq!(answer["results"][0]["is_reached"], false);
+    assert!(answer["results"][0]["error"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn runs_without_a_value_are_counted_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    // 49 people: no run has 60 arrivals.
+    let more = [
+        "--error",
+        "flow_per_s=2%",
+        "--set",
+        "measurements.1.flow_of_first.arrivals=60",
+    ];
+    let output = run_in(folder.path(), &estimate("out", &more));
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr(&output).contains("fewer than two of 10 runs"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn the_number_of_runs_is_predicted_from_earlier_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = ["--error", "time_secs=3%", "--plan"];
+    let before = json(&run_in(folder.path(), &estimate("out", &plan)));
+    assert!(before["expected"].is_null());
+    let made = run_in(folder.path(), &estimate("out", &plan[..2]));
+    let made = answer(&made)["estimate"]["runs"]["all"].as_f64().unwrap();
+    let after = json(&run_in(folder.path(), &estimate("out", &plan)));
+    let runs = after["expected"]["runs"].as_array().unwrap();
+    let runs: f64 = runs.iter().map(|of| of[1].as_f64().unwrap()).sum();
+    assert!((0.5..2.0).contains(&(runs / made)), "{runs} of {made}");
+}
