@@ -17,6 +17,7 @@ program: see `scenarios()`. Settings are the keys of a scenario file, as keyword
 `viscosity=5`, `**{"sources.0.rows": 50}`.
 """
 
+from ._estimate import Estimate, estimate
 from ._native import Error, __version__, scenarios
 from ._run import Run, columns, run
 from ._simulation import Simulation
@@ -24,10 +25,12 @@ from ._study import sweep, validate
 
 __all__ = [
     "Error",
+    "Estimate",
     "Run",
     "Simulation",
     "__version__",
     "columns",
+    "estimate",
     "run",
     "scenarios",
     "sweep",

@@ -46,7 +46,7 @@ def sweep(
         results = Path(folder, "results") if out is None else _given.path_of(out)
         options = options | {"out": results, "json": True}
         try:
-            text = _watched("sweep", str(path), options=options, progress=progress)
+            text = watched("sweep", str(path), options=options, progress=progress)
         except _native.Error as problem:
             # Files of a dict are gone when the message is read.
             raise _native.Error(str(problem).replace(f"{folder}{os.sep}", "")) from None
@@ -82,7 +82,7 @@ def validate(
         names = map(_given.path_of, scenes)
         try:
             options = options | {"out": results}
-            _watched("validate", *names, options=options, progress=progress)
+            watched("validate", *names, options=options, progress=progress)
         except _native.Error:
             # A scene that misses its expectation is a result, too.
             if _written(table) == before:
@@ -95,7 +95,7 @@ def _written(file: Path) -> int | None:
     return file.stat().st_mtime_ns if file.exists() else None
 
 
-def _watched(command: str, *arguments: str, options: dict[str, Any], progress: bool | None) -> str:
+def watched(command: str, *arguments: str, options: dict[str, Any], progress: bool | None) -> str:
     """The output of a command that says how far it is."""
     with Bar(100, "%", progress) as bar:
 

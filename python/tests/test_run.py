@@ -179,3 +179,23 @@ def test_exit_codes_are_those_of_the_program():
     assert code("run", "no/such.json") == 2
     assert code("--nonsense") == 2
     assert code("--version") == 0
+
+
+def test_an_estimate_has_the_errors_asked_for(tmp_path):
+    small = {"grids.0.columns": 7, "grids.0.rows": 7}
+    answer = sc.estimate("evacuation", {"time_secs": "4%"}, out=tmp_path, **small)
+    row = answer.table.loc["time_secs"]
+    assert row["reached"] and row["error"] <= 0.04 * row["value"]
+    assert row["error"] == pytest.approx(numpy.hypot(row["seeds"], row["step"]))
+    values = [at["values"] for at in answer.answer["results"][0]["steps"]]
+    assert row["n"] == sum(map(len, values)) == len(list((tmp_path / "cases").glob("*.json")))
+    run = sc.run("evacuation", preset="fast", seed=2, **small)
+    own = answer.answer["results"][0]["steps"]
+    steps = {at["step"]: at["values"] for at in own}
+    assert run.measurements["metrics"].get("time_secs", run.measurements["time_secs"]) == steps[0.025][1]
+    assert answer.plot().png.startswith(b"\x89PNG")
+    with pytest.warns(UserWarning, match="at most 4 runs were allowed"):
+        few = sc.estimate("evacuation", {"time_secs": 0.001}, most_runs=4, **small)
+    assert few.table["n"].tolist() == [4] and not few.table["reached"].any()
+    with pytest.raises(sc.Error, match="no such result"):
+        sc.estimate("evacuation", {"flow": "2%"}, **small)

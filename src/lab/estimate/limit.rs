@@ -5,9 +5,9 @@
 //! y = μ + β (h/h₁)^p + ε,  h₁ = 0.02 s,
 //!
 //! with μ its mean in the limit, β the error of the paper's step, and ε the chance of the seed, normal with a standard
-//! deviation σ that does not depend on h. μ has a flat prior; p is one of nine orders between 0.4 and 2.5, which are
-//! equally likely at first; β is normal with mean 0 and a standard deviation of 0.2, 0.6 or 3 σ. These three, and their
-//! weights, are the errors of 32 measurements in six scenes with four profiles (docs/accuracy.md). Given p and the size
+//! deviation σ that does not depend on h. μ has a flat prior; p is one of nine orders between 0.4 and 2.5, of which 1 is
+//! the most likely at first; β is normal with mean 0 and a standard deviation of 0.3, 3 or 10 σ. The weights of orders
+//! and sizes are those with which intervals hold the value as often as they say (docs/accuracy.md). Given p and the size
 //! of β, the posterior of (μ, β) is normal; the posterior of μ is the mixture over all p and sizes, weighted by how
 //! likely they make the data.
 //!
@@ -22,10 +22,20 @@ use std::f64::consts::TAU;
 
 /// h₁, seconds.
 const REFERENCE_STEP: f64 = crate::engine::clock::PAPER_TIME_STEP;
-/// The orders p.
-const ORDERS: [f64; 9] = [0.4, 0.5, 0.63, 0.79, 1.0, 1.26, 1.58, 2.0, 2.5];
+/// The orders p, and their weights.
+const ORDERS: [(f64, f64); 9] = [
+    (0.4, 0.04),
+    (0.5, 0.07),
+    (0.63, 0.11),
+    (0.79, 0.16),
+    (1.0, 0.22),
+    (1.26, 0.16),
+    (1.58, 0.12),
+    (2.0, 0.08),
+    (2.5, 0.04),
+];
 /// Sizes of the error β in standard deviations of a run, and their weights.
-const SIZES: [(f64, f64); 3] = [(0.2, 0.4), (0.6, 0.4), (3.0, 0.2)];
+const SIZES: [(f64, f64); 3] = [(0.3, 0.7), (3.0, 0.2), (10.0, 0.1)];
 /// The prior weight of a coarsest step that is too long, and the range of its mean, in standard deviations of a run.
 const TOO_LONG: (f64, f64) = (0.1, 20.0);
 /// The part of the finest step's error that counts as a standard error.
@@ -98,10 +108,10 @@ impl Limit {
             (f64::ln(1.0 - weight) + density, Some((free, others)))
         });
         for used in [Some((belongs, levels)), free].into_iter().flatten() {
-            for order in ORDERS {
+            for (order, likely) in ORDERS {
                 for (size, prior) in SIZES {
                     let of = component(used.1, origin, variance, order, size * spread);
-                    logs.push(used.0 + of.0 + f64::ln(prior));
+                    logs.push(used.0 + of.0 + f64::ln(likely * prior));
                     components.push(of.1);
                 }
             }

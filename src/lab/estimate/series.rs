@@ -28,10 +28,6 @@ pub struct Reached {
     pub step: f64,
 }
 
-/// How much wider intervals are than Student's t says, because the number of runs depends on the runs: this over the
-/// degrees of freedom. Found by resampling (`sandbox accuracy coverage`).
-const LOOKS: f64 = 0.0;
-
 /// The runs of a measurement in short: means and one variance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Digest {
@@ -68,8 +64,7 @@ impl Series {
 impl Digest {
     /// The half width of a confidence interval, in standard errors.
     pub fn width(&self, confidence: f64) -> f64 {
-        let degrees = self.degrees as f64;
-        student(self.degrees, confidence).unwrap_or(f64::INFINITY) * (1.0 + LOOKS / degrees)
+        student(self.degrees, confidence).unwrap_or(f64::INFINITY)
     }
 
     /// The value in the limit of fine steps with its errors.
