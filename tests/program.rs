@@ -17,6 +17,7 @@ mod command_lines;
 mod differences;
 mod draw;
 mod estimate;
+mod estimate_program;
 mod from_runs;
 mod interrupts;
 mod killed;

@@ -193,15 +193,13 @@ impl Compared {
     }
 }
 
-/// A number with as many decimals as its error has in two digits.
+/// A number with as many decimals as its error has in two digits; all digits without an error.
 pub(super) fn digits(number: f64, error: f64) -> String {
     let places = error.log10().floor();
-    let decimals = if places.is_finite() {
-        (1.0 - places).clamp(0.0, 12.0)
-    } else {
-        6.0
-    };
-    let decimals = decimals as usize;
+    if !places.is_finite() {
+        return number.to_string();
+    }
+    let decimals = (1.0 - places).clamp(0.0, 12.0) as usize;
     let text = format!("{number:.decimals$}");
     match text.trim_matches(['-', '0', '.']).is_empty() {
         true => text.trim_start_matches('-').to_owned(),

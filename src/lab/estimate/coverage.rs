@@ -5,24 +5,22 @@
 //! together give.
 
 use serde::Serialize;
-use serde_json::{Value, json};
 
-use super::plan::{Goal, Offer, PILOT, further, predicted};
+use super::plan::{Goal, Offer, first_round, further, predicted};
 use super::question::{Question, QuestionError};
 use super::run::Runs;
 use super::series::{Digest, Series};
 use super::wanted::{Limits, Request, Wanted};
-use crate::analysis::statistics::{MeanStd, Range, Share, shuffled};
+use crate::analysis::statistics::{MeanStd, shuffled};
 use crate::lab::error::LabError;
 use crate::lab::jobs::each;
-use crate::output::table::Table;
 use crate::runs::case::Source;
 use crate::runs::job::Listener;
 use crate::runs::store::Store;
 use crate::scenario::Setting;
 
 /// The probability that intervals are made for.
-const CONFIDENCE: f64 = 0.95;
+pub(super) const CONFIDENCE: f64 = 0.95;
 /// The number of standard errors on either side of such an interval, if the spread is known.
 const NORMAL: f64 = 1.959_963_984_540_054;
 /// How often the first step is halved.
@@ -112,7 +110,7 @@ pub struct Coverage {
     pub rows: Vec<Covered>,
     /// The computing time of the pool, seconds on one core.
     pub secs: f64,
-    pool: Pool,
+    pub(super) pool: Pool,
 }
 
 /// Makes the runs of the pools that are not in the store, and repeats the estimates.
@@ -253,8 +251,7 @@ fn repeated(
     wanted: &Wanted,
     references: [f64; 2],
 ) -> Estimate {
-    let mut counts = vec![0; offers.len()];
-    counts[start..].fill(PILOT);
+    let mut counts = first_round(offers.len(), start);
     loop {
         let values = all.values.iter().zip(&counts);
         let drawn = Series {
@@ -314,93 +311,4 @@ fn next(
         .map(|(offer, &runs)| Offer { runs, ..*offer })
         .collect();
     further(&[goal], &offers, CONFIDENCE)
-}
-
-impl Coverage {
-    /// The number of intervals that hold the value, of all.
-    pub fn total(&self) -> Share {
-        let held = self.rows.iter().map(|row| row.held).sum();
-        Share::of(held, self.rows.iter().map(|row| row.estimates).sum())
-    }
-
-    /// As Markdown.
-    pub fn markdown(&self) -> String {
-        self.written(Table::markdown)
-    }
-
-    /// For a terminal.
-    pub fn text(&self) -> String {
-        self.written(Table::text)
-    }
-
-    fn written(&self, table: fn(&Table) -> String) -> String {
-        let worst = self
-            .rows
-            .iter()
-            .map(|row| 100.0 * row.held as f64 / row.estimates.max(1) as f64);
-        let ratio = |k: usize, of: &dyn Fn(&Covered) -> f64| {
-            let ratios = self
-                .rows
-                .iter()
-                .filter_map(|row| Some(of(row) / row.known?[k]));
-            Range::of(&ratios.collect::<Vec<_>>()).median
-        };
-        format!(
-            "{}\n{} % intervals hold the value in {} of all estimates; worst row {:.1} %. Median over the rows: {:.1} \
-             times the runs and {:.1} times the time of an estimate for which spread and error of the step are known. \
-             The pools of {} runs at the finest step and {} at each other took {:.1} hours on one core.\n",
-            table(&self.table()),
-            100.0 * CONFIDENCE,
-            self.total(),
-            Range::of(&worst.collect::<Vec<_>>()).minimum,
-            ratio(0, &|row| row.runs),
-            ratio(1, &|row| row.secs),
-            self.pool.reference,
-            self.pool.seeds,
-            self.secs / 3600.0,
-        )
-    }
-
-    fn table(&self) -> Table {
-        Table::of(&self.rows)
-            .column("scene", |row| row.scene.as_str())
-            .column("profile", |row| row.profile.as_str())
-            .column("result", |row| row.result.as_str())
-            .column("wanted", |row| row.wanted.as_str())
-            .column("mean at the finest step", |row| {
-                format!("{:.4} ± {:.4}", row.finest[0], row.finest[1])
-            })
-            .column("limit", |row| {
-                format!("{:.4} ± {:.4}", row.limit[0], row.limit[1])
-            })
-            .fixed("holds the mean [%]", 1, |row| {
-                100.0 * row.held as f64 / row.estimates.max(1) as f64
-            })
-            .fixed("the limit [%]", 1, |row| {
-                100.0 * row.held_limit as f64 / row.estimates.max(1) as f64
-            })
-            .fixed("runs", 0, |row| row.runs)
-            .fixed("if known", 0, |row| row.known.map(|known| known[0]))
-            .fixed("time, times that if known", 1, |row| {
-                row.known.map(|known| row.secs / known[1])
-            })
-            .fixed("predicted [%]", 0, |row| 100.0 * row.predicted)
-            .column("unfinished", |row| row.unfinished)
-            .table()
-    }
-
-    /// Writes `coverage.md` and `coverage.json` into the store's folder.
-    ///
-    /// # Errors
-    /// A file cannot be written.
-    pub fn write(&self, store: &Store) -> Result<(), LabError> {
-        store.write("coverage.md", self.markdown().as_bytes())?;
-        store.write("coverage.json", format!("{:#}\n", self.json()).as_bytes())?;
-        Ok(())
-    }
-
-    /// All results as one object.
-    pub fn json(&self) -> Value {
-        json!({ "confidence": CONFIDENCE, "pool_secs": self.secs, "rows": self.rows })
-    }
 }

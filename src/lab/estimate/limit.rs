@@ -89,28 +89,34 @@ struct Component {
 impl Limit {
     /// The limit of measurements at some levels, from the finest to the coarsest. `variance` is that of single runs.
     pub fn of(levels: &[Level], variance: f64) -> Self {
-        // Differences from the finest level's mean: sums of squares of the values themselves would lose digits.
+        // In standard deviations of a run, from the finest level's mean: sums of squares of the values themselves would
+        // lose digits.
         let origin = levels.first().map_or(0.0, |level| level.mean);
-        let variance = variance
-            .max((ROUNDING * origin).powi(2))
-            .max(f64::MIN_POSITIVE);
-        let spread = variance.sqrt().max(LEAST_SPREAD * origin.abs());
+        let unit = variance.sqrt().max(ROUNDING * origin.abs());
+        if unit == 0.0 {
+            return Self::exact(origin);
+        }
+        let scaled = levels.iter().map(|level| Level {
+            mean: (level.mean - origin) / unit,
+            ..*level
+        });
+        let levels: &[Level] = &scaled.collect::<Vec<_>>();
+        let spread = (LEAST_SPREAD * origin.abs() / unit).max(1.0);
         let mut logs = Vec::new();
         let mut components = Vec::new();
         let (weight, range) = TOO_LONG;
         let apart = levels.split_last().filter(|(_, others)| others.len() > 1);
         // The last level's share in how likely the data are.
         let (belongs, free) = apart.map_or((0.0, None), |(last, others)| {
-            let precision = last.runs as f64 / variance;
-            let off = last.mean - origin;
-            let density = 0.5 * (precision / TAU).ln() - 0.5 * precision * off * off;
+            let runs = last.runs as f64;
+            let density = 0.5 * (runs / TAU).ln() - 0.5 * runs * last.mean * last.mean;
             let free = f64::ln(weight / (range * spread));
             (f64::ln(1.0 - weight) + density, Some((free, others)))
         });
         for used in [Some((belongs, levels)), free].into_iter().flatten() {
             for (order, likely) in ORDERS {
                 for (size, prior) in SIZES {
-                    let of = component(used.1, origin, variance, order, size * spread);
+                    let of = component(used.1, order, size * spread);
                     logs.push(used.0 + of.0 + f64::ln(likely * prior));
                     components.push(of.1);
                 }
@@ -129,26 +135,40 @@ impl Limit {
         let unmodeled = UNMODELED * mean(&|c| c.at(finest) - c.value);
         let spread_of_value = mean(&|c| c.variance + (c.value - value).powi(2));
         let from_seeds = levels.iter().enumerate().map(|(k, level)| {
-            mean(&|c| c.shares.get(k).copied().unwrap_or(0.0)).powi(2) * variance
-                / level.runs as f64
+            mean(&|c| c.shares.get(k).copied().unwrap_or(0.0)).powi(2) / level.runs as f64
         });
         Self {
-            value: origin + value,
-            variance: spread_of_value + unmodeled.powi(2),
-            from_seeds: from_seeds.sum(),
+            value: origin + unit * value,
+            variance: unit * unit * (spread_of_value + unmodeled.powi(2)),
+            from_seeds: unit * unit * from_seeds.sum::<f64>(),
             order: mean(&|c| c.order),
             components: components
                 .iter()
                 .map(|c| Component {
-                    value: origin + c.value,
+                    value: origin + unit * c.value,
+                    error: unit * c.error,
                     ..c.clone()
                 })
                 .collect(),
         }
     }
 
+    /// The limit of runs that all have this value.
+    fn exact(value: f64) -> Self {
+        Self {
+            components: Vec::new(),
+            value,
+            variance: 0.0,
+            from_seeds: 0.0,
+            order: 1.0,
+        }
+    }
+
     /// The mean that is expected at this step.
     pub fn at(&self, step: f64) -> f64 {
+        if self.components.is_empty() {
+            return self.value;
+        }
         let parts = self.components.iter();
         parts
             .map(|component| component.weight * component.at(step))
@@ -168,23 +188,14 @@ impl Component {
 }
 
 /// The posterior for this order, and a standard deviation `size` of β; and the logarithm of how likely they make the
-/// data.
-fn component(
-    levels: &[Level],
-    origin: f64,
-    variance: f64,
-    order: f64,
-    size: f64,
-) -> (f64, Component) {
+/// data. The standard deviation of runs is 1.
+fn component(levels: &[Level], order: f64, size: f64) -> (f64, Component) {
     // The inverse of the covariance matrix of (μ, β) is [[a, b], [b, d]], its product with their means is (u, v).
     let (mut a, mut b, mut d) = (0.0, 0.0, 1.0 / (size * size));
     let (mut u, mut v) = (0.0, 0.0);
     for level in levels {
-        let (x, weight) = (
-            (level.step / REFERENCE_STEP).powf(order),
-            level.runs as f64 / variance,
-        );
-        let mean = level.mean - origin;
+        let x = (level.step / REFERENCE_STEP).powf(order);
+        let (weight, mean) = (level.runs as f64, level.mean);
         a += weight;
         b += weight * x;
         d += weight * x * x;
@@ -196,7 +207,7 @@ fn component(
     let error = (a * v - b * u) / determinant;
     let shares = levels.iter().map(|level| {
         let x = (level.step / REFERENCE_STEP).powf(order);
-        (d - b * x) / determinant * level.runs as f64 / variance
+        (d - b * x) / determinant * level.runs as f64
     });
     let log = 0.5 * (u * value + v * error) - 0.5 * (size * size * determinant).ln();
     let component = Component {

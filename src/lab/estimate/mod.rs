@@ -7,6 +7,7 @@
 mod answer;
 mod compared;
 mod coverage;
+mod coverage_report;
 mod forecast;
 mod limit;
 mod pictures;

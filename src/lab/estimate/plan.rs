@@ -1,8 +1,8 @@
 //! Which runs come next.
 //!
 //! Further runs are added one by one where they shrink the excess of errors over those asked for by most per second of
-//! computing, until none is left; their means count as expected. Half of the runs of this plan are made, and the next
-//! plan is made with their results. All of it is a function of the values: it does not depend on clocks and threads.
+//! computing, until none is left or the number of runs has doubled; their means count as expected. Half of the runs of
+//! this plan are made, and the next plan is made with their results. All of it is a function of the values: it does not depend on clocks and threads.
 
 use super::limit::Limit;
 use super::series::Digest;
@@ -12,8 +12,6 @@ use super::wanted::Tolerance;
 pub const PILOT: usize = 5;
 /// A plan with at most this number of runs is carried out at once.
 const FEW: usize = 6;
-/// A plan has at most this number of additions; later ones are left to the next plan.
-const LONGEST: usize = 80;
 /// Predictions end at this number of runs.
 const MOST_PREDICTED: usize = 100_000;
 
@@ -60,7 +58,12 @@ pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<
     // A step that is finer than half of the finest one so far is left to the next plan.
     let tried = offers.iter().position(|offer| offer.runs > 0);
     let first = tried.unwrap_or(0).saturating_sub(1);
-    for _ in 0..LONGEST {
+    let most = offers
+        .iter()
+        .map(|offer| offer.runs)
+        .sum::<usize>()
+        .max(FEW);
+    while plan.iter().sum::<usize>() < most {
         let choices = (first..offers.len()).map(|k| {
             let runs = offers[k].runs + plan[k];
             let added = if runs > 0 { (runs / 4).max(1) } else { 2 };
@@ -86,6 +89,18 @@ pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<
         plan.iter_mut().for_each(|runs| *runs = runs.div_ceil(2));
     }
     Some(plan)
+}
+
+/// The numbers of runs of the first round: at the step with number `start`, and at the next coarser one, or else at the
+/// next finer one.
+pub fn first_round(offers: usize, start: usize) -> Vec<usize> {
+    let other = if start + 1 < offers {
+        start + 1
+    } else {
+        start.saturating_sub(1)
+    };
+    let runs = |k| if k == start || k == other { PILOT } else { 0 };
+    (0..offers).map(runs).collect()
 }
 
 /// The number of runs at each of `offers` that an estimate is expected to need, from what other runs say of its goals.

@@ -57,7 +57,7 @@ pub struct Question {
     pub names: Vec<String>,
     /// The name of the scenario, and its profile.
     pub title: [String; 2],
-    /// The settings of all runs beside step and seed, as typed.
+    /// The settings of all runs beside profile, step and seed, as typed.
     pub settings: Vec<String>,
     /// The first seed; the runs at each step have this seed and those after it.
     pub first_seed: u64,
@@ -82,7 +82,10 @@ impl Question {
         memory: Option<u64>,
     ) -> Result<Self, QuestionError> {
         let lent = Memory::new(memory);
-        let typed = settings.iter().map(Setting::brief).collect();
+        let typed = settings
+            .iter()
+            .filter(|setting| setting.path() != ["profile"]);
+        let typed = typed.map(Setting::brief).collect();
         let case = Case::new(source.clone(), settings.clone(), &lent)?;
         let scenario = case.scenario().map_err(RunError::from)?;
         let case = if scenario.document.get("preset").is_some() {

@@ -96,7 +96,7 @@ impl Answer {
             self.runs.all,
             round::brief(self.secs)
         );
-        for row in &self.results {
+        for row in self.results.iter().filter(|row| row.reached.error > 0.0) {
             let default = row.default;
             let error = row.written(default.error_of_step);
             text += &match default.runs.zip(default.secs) {
@@ -170,10 +170,6 @@ impl Row {
 
     /// The half width in percent of the value.
     fn percent(&self) -> String {
-        let part = 100.0 * self.reached.error / self.reached.value.abs();
-        match part.is_finite() {
-            true => format!("{} %", round::brief(part)),
-            false => "–".to_owned(),
-        }
+        self.reached.percent().unwrap_or_else(|| "–".to_owned())
     }
 }

@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use rayon::current_num_threads;
 
-use super::plan::{Goal, Offer, PILOT, further};
+use super::compared::digits;
+use super::plan::{Goal, Offer, first_round, further};
 use super::question::{Question, Rung};
 use super::series::{Reached, Series};
 use crate::lab::error::LabError;
@@ -60,8 +61,7 @@ pub fn run<'a>(
 ) -> Result<Runs<'a>, LabError> {
     let begin = Instant::now();
     let mut runs = Runs::none(question)?;
-    let mut wanted = vec![0; runs.levels.len()];
-    wanted[question.start..].fill(PILOT);
+    let mut wanted = first_round(runs.levels.len(), question.start);
     loop {
         let left = runs.cut(&mut wanted, begin.elapsed().as_secs_f64());
         runs.make(&wanted, store, listener)?;
@@ -296,10 +296,15 @@ impl<'a> Runs<'a> {
         let wanted = self.question.request.wanted.iter().zip(&look.reached);
         let results = wanted.filter_map(|(wanted, reached)| {
             let reached = (*reached)?;
-            let part = 100.0 * reached.error / reached.value.abs();
+            let [value, error] =
+                [reached.value, reached.error].map(|number| digits(number, reached.error));
             Some(format!(
-                "{} {:.5} ± {:.5} ({part:.2} %), wanted {}",
-                wanted.name, reached.value, reached.error, wanted.error
+                "{} {value} ± {error}{}, wanted {}",
+                wanted.name,
+                reached
+                    .percent()
+                    .map_or(String::new(), |part| format!(" ({part})")),
+                wanted.error
             ))
         });
         let runs: usize = look.runs.iter().sum();

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::limit::{Level, Limit};
 use super::wanted::Tolerance;
+use crate::analysis::round;
 use crate::analysis::statistics::{MeanStd, student};
 
 /// The values of one measurement at each step, from the finest to the coarsest, in the order of the seeds.
@@ -37,6 +38,15 @@ pub struct Digest {
     pub variance: f64,
     /// Its degrees of freedom.
     degrees: usize,
+}
+
+impl Reached {
+    /// The half width in percent of the value, as `2.1 %`; `None` if the value is 0.
+    pub fn percent(&self) -> Option<String> {
+        let part = 100.0 * self.error / self.value.abs();
+        part.is_finite()
+            .then(|| format!("{} %", round::brief(part)))
+    }
 }
 
 impl Series {
@@ -85,7 +95,10 @@ impl Digest {
     pub fn excess(&self, tolerance: Tolerance, confidence: f64) -> f64 {
         let limit = Limit::of(&self.levels, self.variance);
         let allowed = tolerance.of(limit.value) / self.width(confidence);
-        (limit.variance.sqrt() / allowed).ln().max(0.0)
+        match limit.variance > 0.0 {
+            true => (limit.variance.sqrt() / allowed).ln().max(0.0),
+            false => 0.0,
+        }
     }
 
     /// A digest of these numbers of runs at each of `steps`, whose means are as expected and whose spread is known.

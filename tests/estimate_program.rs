@@ -1,0 +1,232 @@
+//! `sandbox estimate` on the command line.
+
+use std::fs;
+use std::path::Path;
+
+use sandbox::lab::estimate::{Level, Limit};
+use serde_json::Value;
+
+use crate::common::program::{json, refused, run, run_in, stderr};
+
+/// A small evacuation; `more` follows.
+fn estimate<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let small = [
+        "estimate",
+        "evacuation",
+        "--out",
+        out,
+        "--json",
+        "--set",
+        "grids.0.columns=7",
+        "--set",
+        "grids.0.rows=7",
+        "--set",
+        "measurements.1.flow_of_first.arrivals=30",
+    ];
+    [&small[..], more].concat()
+}
+
+/// The answer without times.
+fn answer(output: &std::process::Output) -> Value {
+    let mut answer = json(output);
+    answer["estimate"]["secs"] = Value::Null;
+    for row in answer["estimate"]["results"].as_array_mut().unwrap() {
+        row["default"]["secs"] = Value::Null;
+    }
+    answer
+}
+
+fn cases(folder: &Path) -> usize {
+    fs::read_dir(folder.join("cases")).unwrap().count()
+}
+
+#[test]
+fn an_estimate_is_the_same_on_any_number_of_threads_and_goes_on_where_it_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let wanted = ["--error", "flow_per_s=4%", "--error", "time_secs=4%"];
+    let mut answers = Vec::new();
+    for (out, threads) in [("one", "1"), ("two", "2")] {
+        let more = [&wanted[..], &["--threads", threads]].concat();
+        let output = run_in(folder.path(), &estimate(out, &more));
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        answers.push(answer(&output));
+    }
+    assert_eq!(answers[0], answers[1]);
+    // Interrupted after a few runs by a limit, it keeps them and goes on to the same answer.
+    let more = [&wanted[..], &["--most-runs", "7"]].concat();
+    let cut = run_in(folder.path(), &estimate("cut", &more));
+    assert_eq!(cut.status.code(), Some(1));
+    assert!(
+        stderr(&cut).contains("at most 7 runs were allowed"),
+        "{}",
+        stderr(&cut)
+    );
+    assert!(cases(&folder.path().join("cut")) == 7);
+    let output = run_in(folder.path(), &estimate("cut", &wanted));
+    assert_eq!(answer(&output), answers[0]);
+    assert!(
+        stderr(&output).contains("7 kept from before"),
+        "{}",
+        stderr(&output)
+    );
+    let all = answers[0]["estimate"]["runs"]["all"].as_u64().unwrap();
+    assert_eq!(cases(&folder.path().join("cut")), all as usize);
+}
+
+#[test]
+fn an_answer_is_that_of_its_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run_in(
+        folder.path(),
+        &estimate("out", &["--error", "time_secs=3%"]),
+    );
+    let answer = &answer(&output)["estimate"];
+    let row = &answer["results"][0];
+    assert_eq!(row["is_reached"], true);
+    // A run by itself has the value that the answer lists for its seed and step.
+    let mut squares = 0.0;
+    let (mut found, mut degrees) = (Vec::new(), 0);
+    for at in row["steps"].as_array().unwrap() {
+        let step = at["step"].as_f64().unwrap();
+        let values: Vec<f64> = at["values"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|v| v.as_f64().unwrap())
+            .collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        squares += values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
+        degrees += values.len() - 1;
+        found.push(Level {
+            step,
+            runs: values.len(),
+            mean,
+        });
+        let every = (0.1 / step).round().to_string();
+        let settings = [
+            format!("time_step_secs={step}"),
+            format!("coarse_every={every}"),
+            "grids.0.columns=7".to_owned(),
+            "grids.0.rows=7".to_owned(),
+        ];
+        let set: Vec<&str> = settings
+            .iter()
+            .flat_map(|setting| ["--set", setting])
+            .collect();
+        let alone = run(&[
+            &["evacuation", "--preset", "fast", "--seed", "2", "--json"],
+            &set[..],
+        ]
+        .concat());
+        assert_eq!(
+            json(&alone)["time_secs"].as_f64(),
+            Some(values[1]),
+            "{}",
+            stderr(&alone)
+        );
+    }
+    let limit = Limit::of(&found, squares / degrees as f64);
+    let value = row["value"].as_f64().unwrap();
+    assert!((value - limit.value).abs() < 1e-9 * value);
+}
+
+#[test]
+fn a_result_without_spread_is_exact() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run_in(
+        folder.path(),
+        &estimate("out", &["--error", "evacuated=0.001"]),
+    );
+    let row = &answer(&output)["estimate"]["results"][0];
+    assert_eq!(row["value"], 49.0);
+    assert!(row["error"].as_f64().unwrap() < 1e-6, "{row}");
+}
+
+#[test]
+fn impossible_questions_are_refused_before_the_first_run() {
+    let unknown = ["no such result", "flow_per_s", "did you mean"];
+    refused(
+        &["estimate", "evacuation", "--error", "flow_pers=1%"],
+        2,
+        &unknown,
+    );
+    refused(
+        &["estimate", "evacuation", "--error", "flow_per_s=0%"],
+        2,
+        &["must be above 0"],
+    );
+    refused(
+        &["estimate", "evacuation", "--error", "flow_per_s"],
+        2,
+        &["such as flow_per_s=1%"],
+    );
+    refused(&["estimate", "evacuation"], 2, &["--error"]);
+    refused(
+        &["estimate", "evacuasion", "--error", "flow_per_s=1%"],
+        2,
+        &["evacuasion"],
+    );
+    let twice = [
+        "estimate",
+        "evacuation",
+        "--error",
+        "flow_per_s=1%",
+        "--error",
+        "flow_per_s=2%",
+    ];
+    refused(&twice, 2, &["given twice"]);
+    let sure = [
+        "estimate",
+        "evacuation",
+        "--error",
+        "flow_per_s=1%",
+        "--confidence",
+        "100",
+    ];
+    refused(&sure, 2, &["between 50 and 99.99"]);
+}
+
+#[test]
+fn an_error_that_cannot_be_reached_is_named_with_what_was_reached() {
+    let folder = tempfile::tempdir().unwrap();
+    let more = ["--error", "flow_per_s=0.000000001%", "--most-runs", "12"];
+    let output = run_in(folder.path(), &estimate("out", &more));
+    assert_eq!(output.status.code(), Some(1));
+    let answer = &answer(&output)["estimate"];
+    assert_eq!(answer["runs"]["all"], 12);
+    assert_eq!(answer["results"][0]["is_reached"], false);
+    assert!(answer["results"][0]["error"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn runs_without_a_value_are_counted_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    // 49 people: no run has 60 arrivals.
+    let more = [
+        "--error",
+        "flow_per_s=2%",
+        "--set",
+        "measurements.1.flow_of_first.arrivals=60",
+    ];
+    let output = run_in(folder.path(), &estimate("out", &more));
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr(&output).contains("fewer than two of 10 runs"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn the_number_of_runs_is_predicted_from_earlier_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = ["--error", "time_secs=3%", "--plan"];
+    let before = json(&run_in(folder.path(), &estimate("out", &plan)));
+    assert!(before["expected"].is_null());
+    let made = run_in(folder.path(), &estimate("out", &plan[..2]));
+    let made = answer(&made)["estimate"]["runs"]["all"].as_f64().unwrap();
+    let after = json(&run_in(folder.path(), &estimate("out", &plan)));
+    let runs = after["expected"]["runs"].as_array().unwrap();
+    let runs: f64 = runs.iter().map(|of| of[1].as_f64().unwrap()).sum();
+    assert!((0.5..2.0).contains(&(runs / made)), "{runs} of {made}");
+}
