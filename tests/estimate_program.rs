@@ -230,3 +230,77 @@ fn the_number_of_runs_is_predicted_from_earlier_ones() {
     let runs: f64 = runs.iter().map(|of| of[1].as_f64().unwrap()).sum();
     assert!((0.5..2.0).contains(&(runs / made)), "{runs} of {made}");
 }
+
+#[test]
+fn every_row_of_a_study_has_the_error_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = r#"{"scenario": "evacuation", "settings": {"grids.0.columns": 7, "grids.0.rows": 7},
+        "grid": {"profile": ["sph", "walk+sph"]}, "seeds": 2}"#;
+    fs::write(folder.path().join("study.json"), study).unwrap();
+    let arguments = ["sweep", "study.json", "--error", "time_secs=5%", "--json"];
+    let output = run_in(folder.path(), &arguments);
+    let answers = json(&output);
+    let rows = answers["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 2);
+    for (row, profile) in rows.iter().zip(["sph", "walk+sph"]) {
+        assert_eq!(row["settings"]["profile"], profile);
+        let result = &row["estimate"]["results"][0];
+        assert_eq!(result["is_reached"], true);
+        assert!(result["error"].as_f64().unwrap() <= 0.05 * result["value"].as_f64().unwrap());
+        // The same question by itself has the same answer.
+        let more = ["--error", "time_secs=5%", "--profile", profile];
+        let small = ["--set", "grids.0.columns=7", "--set", "grids.0.rows=7"];
+        let own = [&["estimate", "evacuation", "--json"], &small[..], &more[..]].concat();
+        let own = answer(&run_in(folder.path(), &own));
+        assert_eq!(own["estimate"]["results"][0]["value"], result["value"]);
+    }
+    let table = fs::read_to_string(folder.path().join("study/study-estimate.csv")).unwrap();
+    let head = "profile,time_secs,time_secs_error,time_secs_seeds,time_secs_step,time_secs_n";
+    assert_eq!(table.lines().next(), Some(head));
+    assert!(folder.path().join("study/study-estimate.png").exists());
+    let sharded = [&arguments[..4], &["--shard", "1/2"]].concat();
+    let refused = run_in(folder.path(), &sharded);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        stderr(&refused).contains("without --shard"),
+        "{}",
+        stderr(&refused)
+    );
+}
+
+#[test]
+fn two_answers_are_compared_with_their_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, more: &[&str]| {
+        let more = [&["--error", "time_secs=5%"], more].concat();
+        let output = run_in(folder.path(), &estimate("out", &more));
+        fs::write(folder.path().join(name), output.stdout).unwrap();
+    };
+    write("a.json", &[]);
+    write("b.json", &["--profile", "walk+sph"]);
+    let compared = json(&run_in(
+        folder.path(),
+        &["compare", "a.json", "b.json", "--json"],
+    ));
+    let change = &compared["compared"]["results"][0];
+    assert_eq!(change["is_clear"], true, "{change}");
+    assert!(change["change"].as_f64().unwrap() > change["error"].as_f64().unwrap());
+    // An answer does not differ from itself.
+    let same = json(&run_in(
+        folder.path(),
+        &["compare", "a.json", "a.json", "--json"],
+    ));
+    let change = &same["compared"]["results"][0];
+    assert_eq!(
+        (&change["change"], &change["is_clear"]),
+        (&0.0.into(), &false.into())
+    );
+    write("c.json", &["--confidence", "90"]);
+    let refused = run_in(folder.path(), &["compare", "a.json", "c.json"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        stderr(&refused).contains("90 % cannot be compared"),
+        "{}",
+        stderr(&refused)
+    );
+}

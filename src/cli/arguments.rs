@@ -10,6 +10,7 @@ use super::values::{
     self, dpi, every_frames, frame_rate, millimeters, positive_seconds, recording, seconds, seed,
     threads,
 };
+use crate::lab::estimate::{Limits, Request, Wanted};
 use crate::output::plot::Print;
 use crate::scenario::Preset;
 
@@ -164,6 +165,38 @@ pub struct TrajectoryOptions {
         value_parser = frame_rate
     )]
     pub fps: f64,
+}
+
+/// Results, and the errors that they may have.
+#[derive(Args)]
+pub struct ErrorOptions {
+    /// A result, and the error that it may have: half the width of its confidence interval, in percent of the value or
+    /// in its unit; may be repeated
+    #[arg(long = "error", value_name = "RESULT=ERROR")]
+    pub errors: Vec<Wanted>,
+    /// The probability that an interval holds the value, percent
+    #[arg(long, value_name = "PERCENT", default_value_t = 95.0, requires = "errors", value_parser = values::confidence)]
+    pub confidence: f64,
+    /// The most runs, at all time steps together
+    #[arg(long, value_name = "N", default_value_t = 500, requires = "errors", value_parser = values::runs)]
+    pub most_runs: usize,
+    /// The time after which no more runs begin, minutes [default: no limit]
+    #[arg(long, value_name = "MINUTES", requires = "errors", value_parser = values::minutes)]
+    pub most_minutes: Option<f64>,
+}
+
+impl ErrorOptions {
+    /// What is asked for.
+    pub fn request(&self) -> Request {
+        Request {
+            wanted: self.errors.clone(),
+            confidence: self.confidence / 100.0,
+            limits: Limits {
+                runs: self.most_runs,
+                secs: self.most_minutes.map(|minutes| 60.0 * minutes),
+            },
+        }
+    }
 }
 
 /// How pictures of results are printed.

@@ -17,7 +17,8 @@ use crate::scenario::trajectories::{ReadOptions, Tracks};
 
 #[derive(Args)]
 pub struct CompareOptions {
-    /// A: the result of a run or an estimate as --json printed it, a recording (.rrd), or trajectories (SQLite, text, CSV)
+    /// A: the result of a run or an estimate as --json printed it, a recording (.rrd), or trajectories (SQLite, text,
+    /// CSV)
     pub a: PathBuf,
     /// B: a file of the same kind; a result and a recording can be compared, too
     pub b: PathBuf,

@@ -5,14 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
-use super::arguments::{PrintOptions, SceneOptions, use_threads};
+use super::arguments::{ErrorOptions, PrintOptions, SceneOptions, use_threads};
 use super::failure::Failure;
 use super::inputs::settings;
 use super::terminal::{talk, tell};
 use super::watch::Watch;
-use crate::lab::estimate::{
-    Answer, Forecast, Limits, PILOT, Question, Request, Wanted, run as make, sheet,
-};
+use crate::lab::estimate::{Answer, Forecast, PILOT, Question, run as make, sheet};
 use crate::lab::machine::main_memory;
 use crate::output::plot::Print;
 use crate::runs::case::Source;
@@ -29,19 +27,8 @@ Examples:
 pub struct EstimateOptions {
     /// The name of a scenario (see `sandbox list`), or a scenario file
     pub scenario: String,
-    /// A result, and the error that it may have: half the width of its confidence interval, in percent of the value or
-    /// in its unit; may be repeated
-    #[arg(long = "error", value_name = "RESULT=ERROR", required = true)]
-    pub errors: Vec<Wanted>,
-    /// The probability that an interval holds the value, percent
-    #[arg(long, value_name = "PERCENT", default_value_t = 95.0, value_parser = super::values::confidence)]
-    pub confidence: f64,
-    /// The most runs, at all time steps together
-    #[arg(long, value_name = "N", default_value_t = 500, value_parser = super::values::runs)]
-    pub most_runs: usize,
-    /// The time after which no more runs begin, minutes [default: no limit]
-    #[arg(long, value_name = "MINUTES", value_parser = super::values::minutes)]
-    pub most_minutes: Option<f64>,
+    #[command(flatten)]
+    pub error: ErrorOptions,
     /// Run nothing; print how many runs and minutes are expected, from the finished runs of the folder
     #[arg(long)]
     pub plan: bool,
@@ -58,18 +45,15 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
     let program = &options.scene.program;
     use_threads(program.threads)?;
     options.print.apply();
+    if options.error.errors.is_empty() {
+        let reason =
+            "--error is missing: a result with the error that it may have, such as flow_per_s=1%";
+        return Err(Failure::Input(reason.to_owned()));
+    }
     let source = Source::named(&options.scenario);
     let mut outputs = Outputs::new(program.force || Store::at(&options.out).is_begun());
     let settings = settings(&options.scene, None, &mut outputs)?;
-    let request = Request {
-        wanted: options.errors.clone(),
-        confidence: options.confidence / 100.0,
-        limits: Limits {
-            runs: options.most_runs,
-            secs: options.most_minutes.map(|minutes| 60.0 * minutes),
-        },
-    };
-    let question = Question::new(source, settings, request, main_memory())?;
+    let question = Question::new(source, settings, options.error.request(), main_memory())?;
     let forecast = Forecast::of(&question, &Store::at(&options.out))?;
     if options.plan {
         return plan(forecast.as_ref(), program.json, &options.out);
@@ -126,8 +110,8 @@ fn plan(forecast: Option<&Forecast>, as_json: bool, folder: &Path) -> Result<(),
     let folder = folder.display();
     let unknown = || {
         format!(
-            "unknown: {folder} has no runs of this profile that say anything; the first {PILOT} runs at each of two time \
-             steps will\n"
+            "unknown: {folder} has no runs of this profile that say anything; the first {PILOT} runs at each of two \
+             time steps will\n"
         )
     };
     tell(

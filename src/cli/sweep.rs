@@ -1,14 +1,15 @@
 //! `sandbox sweep`: a study, run from one file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::arguments::{PrintOptions, use_threads};
+use super::arguments::{ErrorOptions, PrintOptions, use_threads};
 use super::failure::Failure;
 use super::terminal::{talk, tell};
 use super::watch::Watch;
+use crate::lab::estimate::Questions;
 use crate::lab::machine::main_memory;
 use crate::lab::sweep::{Drawing, Gathered, Shard, State, Study, run as run_shard};
 use crate::runs::job::Tally;
@@ -27,6 +28,7 @@ pub const EXAMPLE: &str = r#"A study, JSON:
 Examples:
   sandbox sweep study.json
   sandbox sweep study.json --merge --draw flow_per_s --over gas_constant
+  sandbox sweep study.json --error flow_per_s=2%
   sandbox sweep study.json --list
   sandbox sweep study.json --shard 2/8 --out /shared/study
   sandbox sweep study.json --merge --out /shared/study"#;
@@ -54,6 +56,10 @@ pub struct SweepOptions {
     /// Draw over this varied setting, or over two settings as a map [default: the first one with numbers]
     #[arg(long, value_name = "KEY[,KEY]", value_delimiter = ',', conflicts_with_all = ["list", "shard"])]
     pub over: Vec<String>,
+    /// Instead of the study's number of seeds, as many runs and time steps for each combination of settings as these
+    /// errors need (see `sandbox estimate`)
+    #[command(flatten)]
+    pub error: ErrorOptions,
     #[command(flatten)]
     pub print: PrintOptions,
     /// Number of cells to compute at once, each on one thread [default: all cores]
@@ -82,6 +88,9 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let folder = options.out.clone();
     let folder = folder.unwrap_or_else(|| PathBuf::from(&study.name));
     let store = Store::at(&folder);
+    if !options.error.errors.is_empty() {
+        return estimate(&study, &folder, options);
+    }
     if options.list {
         return list(&Gathered::of(&study, &store), options);
     }
@@ -108,16 +117,60 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     some_failed(&tally.failed, tally.jobs)
 }
 
-/// Rejects results that cannot be written or would replace an input. In a folder that does not belong to a study,
-/// existing files with the results' names are replaced only with --force.
-fn check_outputs(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Failure> {
-    let mut outputs = Outputs::new(options.force || store.is_begun());
+/// Makes as many runs for each combination of settings as the errors asked for need.
+fn estimate(study: &Study, folder: &Path, options: &SweepOptions) -> Result<(), Failure> {
+    let alone = options.shard.is_none() && !options.merge && !options.list;
+    if !alone || !options.draw.is_empty() || !options.over.is_empty() {
+        return Err(Failure::Input(
+            "--error: the number of runs depends on their results; give it without --shard, --merge, --list, --draw \
+             and --over (several processes may run the same command with the same --out)"
+                .to_owned(),
+        ));
+    }
+    let questions = Questions::new(study, &options.error.request())?;
+    let is_begun = Store::at(folder).is_begun();
+    let mut outputs = inputs(study, options, is_begun);
+    for file in questions.files() {
+        outputs.writes("--out", &folder.join(file), Manner::Beside);
+    }
+    outputs.check()?;
+    let store = Store::open(folder)?;
+    let answers = questions.answer(&store, &Watch::new())?;
+    let [json, csv, ..] = questions.files();
+    store.write(&json, format!("{:#}\n", answers.json()).as_bytes())?;
+    store.write(&csv, &answers.csv()?)?;
+    let picture = format!("{}-estimate", study.name);
+    answers.sheet().save(&store.path(&picture))?;
+    talk(&format!(
+        "note: {} and other files written",
+        store.path(&csv).display()
+    ));
+    tell(options.json, || answers.json(), || answers.text())?;
+    match answers.missed() {
+        none if none.is_empty() => Ok(()),
+        missed => Err(Failure::Output(format!(
+            "not all errors are as small as asked for:\n  {}",
+            missed.join("\n  ")
+        ))),
+    }
+}
+
+/// The files that the study reads.
+fn inputs(study: &Study, options: &SweepOptions, may_replace: bool) -> Outputs {
+    let mut outputs = Outputs::new(options.force || may_replace);
     if options.file.exists() {
         outputs.reads("the study", &options.file);
     }
     for path in study.inputs() {
         outputs.reads("the study's", path);
     }
+    outputs
+}
+
+/// Rejects results that cannot be written or would replace an input. In a folder that does not belong to a study,
+/// existing files with the results' names are replaced only with --force.
+fn check_outputs(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Failure> {
+    let mut outputs = inputs(study, options, store.is_begun());
     for file in study.files() {
         // Another process may start the same study at the same time, so do not create trial files.
         outputs.writes("--out", &store.folder().join(file), Manner::Beside);

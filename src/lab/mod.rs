@@ -1,8 +1,9 @@
 //! The lab: experiments of many runs. The paper's tables and figures ([`reproduce`]), studies over settings and seeds
-//! ([`sweep`]), results with the errors asked for ([`mod@estimate`]), run time on this [`machine`] ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]),
-//! run time against error ([`accuracy`]), cases with known answers and scenes of experiments ([`suite`]), and the
-//! search for parameters that reproduce them ([`calibrate`]). [`measure`] computes densities, fields, fundamental
-//! diagrams and flows of any trajectory; [`differences`] compares two results. Their pictures share [`gallery`].
+//! ([`sweep`]), results with the errors asked for ([`mod@estimate`]), run time on this [`machine`]
+//! ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]), run time against error ([`accuracy`]),
+//! cases with known answers and scenes of experiments ([`suite`]), and the search for parameters that reproduce them
+//! ([`calibrate`]). [`measure`] computes densities, fields, fundamental diagrams and flows of any trajectory;
+//! [`differences`] compares two results. Their pictures share [`gallery`].
 
 pub mod error;
 

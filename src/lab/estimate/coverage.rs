@@ -1,8 +1,8 @@
 //! How often intervals hold the value: estimates repeated with the runs of a pool.
 //!
 //! The pool has runs of a question at its four coarsest steps, with many seeds. An estimate is repeated with these runs
-//! in another order each time, and its interval is compared with the mean of all runs at the finest step, and with the limit that all runs of the pool
-//! together give.
+//! in another order each time, and its interval is compared with the mean of all runs at the finest step, and with the
+//! limit that all runs of the pool together give.
 
 use serde::Serialize;
 

@@ -5,11 +5,11 @@
 //! y = μ + β (h/h₁)^p + ε,  h₁ = 0.02 s,
 //!
 //! with μ its mean in the limit, β the error of the paper's step, and ε the chance of the seed, normal with a standard
-//! deviation σ that does not depend on h. μ has a flat prior; p is one of nine orders between 0.4 and 2.5, of which 1 is
-//! the most likely at first; β is normal with mean 0 and a standard deviation of 0.3, 3 or 10 σ. The weights of orders
-//! and sizes are those with which intervals hold the value as often as they say (docs/accuracy.md). Given p and the size
-//! of β, the posterior of (μ, β) is normal; the posterior of μ is the mixture over all p and sizes, weighted by how
-//! likely they make the data.
+//! deviation σ that does not depend on h. μ has a flat prior; p is one of nine orders between 0.4 and 2.5, of which 1
+//! is the most likely at first; β is normal with mean 0 and a standard deviation of 0.3, 3 or 10 σ. The weights of
+//! orders and sizes are those with which intervals hold the value as often as they say (docs/accuracy.md). Given p and
+//! the size of β, the posterior of (μ, β) is normal; the posterior of μ is the mixture over all p and sizes, weighted
+//! by how likely they make the data.
 //!
 //! Steps may be too long for any order: social forces in a jam change the flow by half from one step to the next. So
 //! with a prior weight of 0.1 the coarsest of three or more steps does not belong to the others, and its mean may be

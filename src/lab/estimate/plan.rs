@@ -2,7 +2,8 @@
 //!
 //! Further runs are added one by one where they shrink the excess of errors over those asked for by most per second of
 //! computing, until none is left or the number of runs has doubled; their means count as expected. Half of the runs of
-//! this plan are made, and the next plan is made with their results. All of it is a function of the values: it does not depend on clocks and threads.
+//! this plan are made, and the next plan is made with their results. All of it is a function of the values: it does not
+//! depend on clocks and threads.
 
 use super::limit::Limit;
 use super::series::Digest;

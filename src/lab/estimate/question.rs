@@ -77,24 +77,33 @@ impl Question {
     /// The scenario is invalid, or has no result with a wanted name.
     pub fn new(
         source: Source,
-        mut settings: Vec<Setting>,
+        settings: Vec<Setting>,
         request: Request,
         memory: Option<u64>,
     ) -> Result<Self, QuestionError> {
-        let lent = Memory::new(memory);
         let typed = settings
             .iter()
             .filter(|setting| setting.path() != ["profile"]);
         let typed = typed.map(Setting::brief).collect();
-        let case = Case::new(source.clone(), settings.clone(), &lent)?;
+        let case = Case::new(source, settings, &Memory::new(memory))?;
+        Self::of(&case, typed, request, memory)
+    }
+
+    /// A question about a run with other seeds and steps; `typed` are its settings for the reader.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of(
+        case: &Case,
+        typed: Vec<String>,
+        request: Request,
+        memory: Option<u64>,
+    ) -> Result<Self, QuestionError> {
         let scenario = case.scenario().map_err(RunError::from)?;
-        let case = if scenario.document.get("preset").is_some() {
-            case
-        } else {
-            let name = json!(Preset::Fast);
-            settings.insert(0, Setting::of("preset", name, "preset=fast"));
-            Case::new(source, settings, &lent)?
-        };
+        let has_preset = scenario.document.get("preset").is_some();
+        let preset = Setting::of("preset", json!(Preset::Fast), "preset=fast");
+        let preset = Some(preset).filter(|_| !has_preset);
+        let case = case.with(preset.into_iter().collect(), &Memory::new(memory))?;
         let scenario = case.scenario().map_err(RunError::from)?;
         let [title, profile] = [&scenario.name, &scenario.profile_name].map(String::clone);
         let first_seed = scenario.seed;
@@ -157,8 +166,8 @@ impl Question {
     }
 }
 
-/// The steps on offer, from the finest to the coarsest, and the place of the scenario's own step among them: half of it,
-/// a quarter of it, and so on, and about twice the step if that is stable. All divide the time between coarse frames.
+/// The steps on offer, from the finest to the coarsest, and the place of the scenario's own step among them: half of
+/// it, a quarter of it, and so on, and about twice the step if that is stable. All divide the time between coarse frames.
 fn rungs(scenario: &Scenario) -> (Vec<Rung>, usize) {
     let clock = scenario.scene.clock;
     let (own, coarse) = (clock.coarse_every(), clock.coarse_step());

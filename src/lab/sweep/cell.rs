@@ -60,7 +60,7 @@ impl fmt::Display for Cell {
 }
 
 /// A value as in `--set key=value`: text without quotes.
-pub(super) fn plain(value: &Value) -> String {
+pub(in crate::lab) fn plain(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
         other => other.to_string(),

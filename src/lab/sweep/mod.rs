@@ -36,6 +36,7 @@ mod tables;
 mod written;
 
 pub use cell::Cell;
+pub(in crate::lab) use cell::plain;
 pub(in crate::lab) use choice::source;
 pub(in crate::lab) use entries::Entries;
 pub(in crate::lab) use gathered::number;
