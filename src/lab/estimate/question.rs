@@ -167,7 +167,8 @@ impl Question {
 }
 
 /// The steps on offer, from the finest to the coarsest, and the place of the scenario's own step among them: half of
-/// it, a quarter of it, and so on, and about twice the step if that is stable. All divide the time between coarse frames.
+/// it, a quarter of it, and so on, and about twice the step if that is stable. All divide the time between coarse
+/// frames.
 fn rungs(scenario: &Scenario) -> (Vec<Rung>, usize) {
     let clock = scenario.scene.clock;
     let (own, coarse) = (clock.coarse_every(), clock.coarse_step());
