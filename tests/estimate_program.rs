@@ -277,7 +277,7 @@ fn two_answers_are_compared_with_their_errors() {
         fs::write(folder.path().join(name), output.stdout).unwrap();
     };
     write("a.json", &[]);
-    write("b.json", &["--profile", "walk+sph"]);
+    write("b.json", &["--set", "grids.0.columns=12"]);
     let compared = json(&run_in(
         folder.path(),
         &["compare", "a.json", "b.json", "--json"],

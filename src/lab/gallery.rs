@@ -135,6 +135,19 @@ pub fn around(values: impl IntoIterator<Item = f64>, factor: f64) -> [f64; 2] {
     positive(values, [1.0 / factor, factor])
 }
 
+/// A range around all values, with a margin of 5 %, for a linear axis.
+pub fn spanned(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+        [low.min(x), high.max(x)]
+    });
+    let [low, high] = if ends[0] <= ends[1] { ends } else { [0.0, 1.0] };
+    let margin = match 0.05 * (high - low) {
+        margin if margin > 0.0 => margin,
+        _ => 0.05 * low.abs().max(1.0),
+    };
+    [low - margin, high + margin]
+}
+
 /// At most about `most` of many items, at equal distances: more marks would hide each other.
 pub fn thinned<T>(items: &[T], most: usize) -> impl Iterator<Item = &T> {
     items.iter().step_by(items.len().div_ceil(most).max(1))

@@ -30,6 +30,8 @@ pub struct Row {
     pub is_reached: bool,
     /// The order of the error in the time step that fits the runs best, averaged over what is possible.
     pub order: f64,
+    /// The standard deviation of runs at the same step, over all steps.
+    pub deviation: f64,
     /// The means at each step with runs.
     pub steps: Vec<AtStep>,
     /// The number of runs without a value.
@@ -189,6 +191,7 @@ impl Row {
             wanted: wanted.error.to_string(),
             is_reached: reached.error <= wanted.error.of(reached.value),
             order: limit.order,
+            deviation: digest.variance.sqrt(),
             limit: limit.clone(),
             steps: steps.collect(),
             missing: missing.count(),

@@ -1,9 +1,9 @@
 //! The picture of an estimate: the way to each result.
 
-use super::answer::{Answer, Row};
+use super::answer::{Answer, AtStep, Row};
 use super::run::Runs;
 use crate::engine::clock::PAPER_TIME_STEP;
-use crate::lab::gallery::{around, band, curve};
+use crate::lab::gallery::{around, band, curve, spanned};
 use crate::output::colors::light;
 use crate::output::plot::{
     Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style, line_color,
@@ -27,10 +27,7 @@ pub fn sheet(runs: &Runs, answer: &Answer) -> Sheet {
 fn by_step(row: &Row) -> Panel {
     let coarsest = row.steps.iter().map(|at| at.step).fold(0.0, f64::max);
     let reached = row.reached;
-    let error = |at: &super::answer::AtStep| {
-        at.deviation
-            .map_or(0.0, |deviation| deviation / (at.runs as f64).sqrt())
-    };
+    let error = |at: &AtStep| row.deviation / (at.runs as f64).sqrt();
     let points = row.steps.iter().map(|at| Point {
         x: at.step,
         y: at.mean,
@@ -41,12 +38,6 @@ fn by_step(row: &Row) -> Panel {
         .iter()
         .flat_map(|at| [at.mean - 2.0 * error(at), at.mean + 2.0 * error(at)]);
     let ends = ends.chain([reached.value - reached.error, reached.value + reached.error]);
-    let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
-        [low.min(y), high.max(y)]
-    });
-    let margin = (0.08 * (high - low))
-        .max(1e-9 * high.abs())
-        .max(f64::MIN_POSITIVE);
     let color = line_color(0);
     let across = [-0.02 * coarsest, 1.05 * coarsest];
     let [upper, lower] =
@@ -63,7 +54,7 @@ fn by_step(row: &Row) -> Panel {
         Mark::Points(points.collect(), Style::full(BLACK, 2.4, "mean of runs")),
     ];
     let x = Axis::linear("time step [s]", [-0.03 * coarsest, 1.06 * coarsest]);
-    let y = Axis::linear(&row.name, [low - margin, high + margin]);
+    let y = Axis::linear(&row.name, spanned(ends));
     Panel::new("", x, y, marks).with_legend(Corner::UpperLeft)
 }
 

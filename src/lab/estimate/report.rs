@@ -65,7 +65,7 @@ impl Answer {
             .column("seeds", |row| row.written(row.reached.seeds))
             .column("step", |row| row.written(row.reached.step))
             .column("wanted", |row| row.wanted.as_str())
-            .column("reached", |row| ["no", "yes"][usize::from(row.is_reached)])
+            .column("reached", Row::yes_or_no)
             .column("order", |row| format!("{:.1}", row.order))
             .table()
     }
@@ -166,6 +166,11 @@ impl Row {
     /// A number of this result with as many decimals as its error has in two digits.
     pub fn written(&self, number: f64) -> String {
         digits(number, self.reached.error)
+    }
+
+    /// Whether the error is as small as asked for.
+    pub(super) fn yes_or_no(&self) -> &'static str {
+        ["no", "yes"][usize::from(self.is_reached)]
     }
 
     /// The half width in percent of the value.

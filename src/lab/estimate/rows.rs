@@ -7,7 +7,7 @@ use super::question::{Question, QuestionError};
 use super::run::run;
 use super::wanted::Request;
 use crate::lab::error::LabError;
-use crate::lab::gallery::with_legend;
+use crate::lab::gallery::{spanned, with_legend};
 use crate::lab::sweep::{Cell, Study, plain};
 use crate::output::plot::{Axis, BLACK, Mark, Panel, Point, Sheet, Style};
 use crate::output::table::{Columns, Table};
@@ -120,7 +120,7 @@ impl Answers<'_> {
                     let [value, error] = [row.reached.value, row.reached.error];
                     format!("{} ± {}", row.written(value), row.written(error))
                 })
-                .column("reached", |(_, answer)| answer.results[k].is_reached)
+                .column("reached", |(_, answer)| answer.results[k].yes_or_no())
                 .column("n", |(_, answer)| runs(&answer.results[k]));
         }
         format!("{ABOUT}\n\n{}", columns.table().text())
@@ -179,14 +179,8 @@ impl Answers<'_> {
                 });
             let points: Vec<Point> = points.collect();
             let ends = points.iter().flat_map(|p| [p.y - p.error, p.y + p.error]);
-            let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
-                [low.min(y), high.max(y)]
-            });
-            let margin = (0.06 * (high - low))
-                .max(1e-9 * high.abs())
-                .max(f64::MIN_POSITIVE);
             let x = Axis::names(&axes.join(", "), labels.clone());
-            let y = Axis::linear(&name, [low - margin, high + margin]);
+            let y = Axis::linear(&name, spanned(ends));
             let marks = vec![Mark::Points(points, Style::full(BLACK, 2.4, ""))];
             Panel::new("", x, y, marks)
         });

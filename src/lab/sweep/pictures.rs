@@ -9,7 +9,7 @@ use super::cell::{LABEL, plain};
 use super::gathered::{Combination, Gathered};
 use super::readable::{readable, readables};
 use crate::analysis::statistics::MeanStd;
-use crate::lab::gallery::{self, band, curve, distinct, with_legend};
+use crate::lab::gallery::{self, band, curve, distinct, spanned, with_legend};
 use crate::output::colors::{ColorMap, Rgb, light};
 use crate::output::plot::{Axis, ColorBar, Mark, Panel, Point, Sheet, Style, line_color};
 
@@ -156,7 +156,7 @@ fn lines(
             let half = mean.interval_95().unwrap_or(0.0);
             [mean.mean - half, mean.mean + half]
         });
-        let y = Axis::linear(name, around(ends));
+        let y = Axis::linear(name, spanned(ends));
         let marks = bands.into_iter().chain(marks).collect();
         Panel::new("", scale.axis(), y, marks)
     };
@@ -210,7 +210,7 @@ fn maps(
     let mut panels = Vec::new();
     for (k, measurement) in measured {
         let values = || combinations.iter().filter_map(|one| one.means[*k].as_ref());
-        let map = ColorMap::viridis(around(values().map(|mean| mean.mean)).map(|x| x as f32));
+        let map = ColorMap::viridis(spanned(values().map(|mean| mean.mean)).map(|x| x as f32));
         for name in &names {
             let [columns, rows] = scales.each_ref().map(|scale| scale.values.len());
             let mut cells = vec![None; columns * rows];
@@ -305,21 +305,8 @@ impl<'a> Scale<'a> {
     fn axis(&self) -> Axis {
         let numbers = self.values.iter().filter_map(Value::as_f64);
         match self.numeric {
-            true => Axis::linear(self.name, around(numbers)),
+            true => Axis::linear(self.name, spanned(numbers)),
             false => Axis::names(self.name, readables(&self.values)),
         }
     }
-}
-
-/// A range around all values, with a margin of 5 %.
-fn around(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-        [low.min(x), high.max(x)]
-    });
-    let [low, high] = if ends[0] <= ends[1] { ends } else { [0.0, 1.0] };
-    let margin = match 0.05 * (high - low) {
-        margin if margin > 0.0 => margin,
-        _ => 0.05 * low.abs().max(1.0),
-    };
-    [low - margin, high + margin]
 }
