@@ -1,8 +1,8 @@
 //! Results with their errors: the user names the error, and an [`Answer`] has values that hold it, at the least cost.
 //!
-//! [`run`] makes runs of a [`Question`] at several time steps and with several seeds, round by round, until the
-//! confidence intervals are as narrow as asked for. An interval holds two errors: that of chance, from the seeds, and
-//! that of the time step, from the means at different steps (`limit.rs`). `plan.rs` chooses which runs come next.
+//! [`run`](fn@run) makes runs of a [`Question`] at several time steps and with several seeds, round by round, until
+//! the confidence intervals are as narrow as asked for. An interval holds two errors: that of chance, from the seeds,
+//! and that of the time step, from the means at different steps (`limit.rs`). `plan.rs` chooses which runs come next.
 
 mod answer;
 mod compared;

@@ -60,7 +60,7 @@ impl<'a> Questions<'a> {
     /// Makes the runs of all rows, row by row.
     ///
     /// # Errors
-    /// As [`run`].
+    /// As [`run`](fn@super::run).
     pub fn answer(&self, store: &Store, listener: &dyn Listener) -> Result<Answers<'a>, LabError> {
         let all = self.questions.len();
         let rows = self
