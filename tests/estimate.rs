@@ -3,7 +3,7 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sandbox::lab::estimate::{
-    Digest, Goal, Level, Limit, Offer, Series, Tolerance, Wanted, further, predicted,
+    Goal, Level, Limit, Means, Offer, Series, Tolerance, Wanted, further, predicted,
 };
 
 /// Orders and sizes of errors with their weights in percent, as docs/accuracy.md gives them.
@@ -160,9 +160,9 @@ fn intervals_hold_the_limit_of_drawn_data_as_often_as_they_say() {
                 .collect()
         });
         let values = values.collect();
-        let digest = Series { steps, values }.digest().unwrap();
+        let means = Series { steps, values }.means().unwrap();
         for (held, confidence) in held.iter_mut().zip([0.8, 0.95]) {
-            let reached = digest.reached(confidence).0;
+            let reached = means.reached(confidence).0;
             *held += usize::from((reached.value - 100.0).abs() <= reached.error);
         }
     }
@@ -172,7 +172,7 @@ fn intervals_hold_the_limit_of_drawn_data_as_often_as_they_say() {
     assert!((0.936..0.975).contains(&ninety_five), "{ninety_five}");
 }
 
-fn digest(values: &[(f64, &[f64])]) -> Digest {
+fn means(values: &[(f64, &[f64])]) -> Means {
     let series = Series {
         steps: values.iter().map(|(step, _)| *step).collect(),
         values: values
@@ -180,7 +180,7 @@ fn digest(values: &[(f64, &[f64])]) -> Digest {
             .map(|(_, v)| v.iter().copied().map(Some).collect())
             .collect(),
     };
-    series.digest().unwrap()
+    series.means().unwrap()
 }
 
 fn offers(runs: [usize; 3]) -> Vec<Offer> {
@@ -198,15 +198,15 @@ fn offers(runs: [usize; 3]) -> Vec<Offer> {
 
 #[test]
 fn no_runs_are_added_once_the_error_is_small_enough() {
-    let digest = digest(&[
+    let means = means(&[
         (0.025, &[9.0, 11.0, 10.0, 10.5, 9.5]),
         (0.05, &[10.0, 9.2, 10.8, 10.1, 9.9]),
     ]);
-    let reached = digest.reached(0.95).0;
+    let reached = means.reached(0.95).0;
     for (factor, is_done) in [(1.01, true), (0.99, false)] {
         let tolerance = Tolerance::Absolute(factor * reached.error);
         let goal = Goal {
-            digest: digest.clone(),
+            means: means.clone(),
             tolerance,
         };
         let further = further(&[goal], &offers([0, 5, 5]), 0.95);
@@ -216,14 +216,14 @@ fn no_runs_are_added_once_the_error_is_small_enough() {
 
 #[test]
 fn smaller_errors_are_expected_to_need_more_runs() {
-    let digest = digest(&[
+    let means = means(&[
         (0.025, &[9.0, 11.0, 10.0, 10.5, 9.5]),
         (0.05, &[10.0, 9.2, 10.8, 10.1, 9.9]),
     ]);
     let runs = |part: f64| -> usize {
         let tolerance = Tolerance::Relative(part);
         let goal = Goal {
-            digest: digest.clone(),
+            means: means.clone(),
             tolerance,
         };
         predicted(&[goal], &offers([0, 0, 0]), 1, 0.95).iter().sum()
@@ -266,11 +266,11 @@ fn a_result_that_is_always_zero_is_exact() {
         steps: vec![0.01, 0.02],
         values: vec![vec![Some(0.0); 5], vec![Some(0.0); 5]],
     };
-    let digest = series.digest().unwrap();
-    let reached = digest.reached(0.95).0;
+    let means = series.means().unwrap();
+    let reached = means.reached(0.95).0;
     assert_eq!(
         [reached.value, reached.error, reached.seeds, reached.step],
         [0.0; 4]
     );
-    assert_eq!(digest.excess(Tolerance::Relative(0.01), 0.95), 0.0);
+    assert_eq!(means.excess(Tolerance::Relative(0.01), 0.95), 0.0);
 }

@@ -175,6 +175,15 @@ fn impossible_questions_are_refused_before_the_first_run() {
         "flow_per_s=2%",
     ];
     refused(&twice, 2, &["given twice"]);
+    let few = [
+        "estimate",
+        "evacuation",
+        "--error",
+        "flow_per_s=1%",
+        "--most-runs",
+        "3",
+    ];
+    refused(&few, 2, &["between 4 and 100000"]);
     let sure = [
         "estimate",
         "evacuation",
@@ -303,4 +312,35 @@ fn two_answers_are_compared_with_their_errors() {
         "{}",
         stderr(&refused)
     );
+}
+
+#[test]
+fn files_have_names_of_their_own_that_stay_in_the_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = r#"{"name": "../a/b", "duration_secs": 2, "navigation": "straight", "goal": [8, 1],
+        "grids": [{"min": [0, 0], "max": [4, 4], "columns": 4, "rows": 4, "jitter": 0.1}],
+        "walkable_area": [[[[-1, -1], [9, -1], [9, 9], [-1, 9]]]],
+        "obstacles": [[[20, 20], [21, 20], [20.5, 21]]],
+        "measurements": [{"density": {"at_secs": 1, "region": [[0, 0], [4, 4]]}}]}"#;
+    fs::write(folder.path().join("room.json"), text).unwrap();
+    for viscosity in ["viscosity=0", "viscosity=5"] {
+        let typed = ["estimate", "room.json", "--error", "density_mean_1s=20%"];
+        let output = run_in(folder.path(), &[&typed[..], &["--set", viscosity]].concat());
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        // What a run notes about the scenario is noted here, too.
+        let alone = run_in(folder.path(), &["run", "room.json", "--until", "0"]);
+        let notes = stderr(&alone);
+        let notes: Vec<&str> = notes
+            .lines()
+            .filter(|line| line.contains("obstacles[0]"))
+            .collect();
+        assert!(
+            !notes.is_empty() && notes.iter().all(|note| said.contains(note)),
+            "{said}"
+        );
+        let name = format!("estimate/a-b-sph-{viscosity}.json");
+        assert!(folder.path().join(&name).exists(), "{name}: {said}");
+    }
+    assert!(!folder.path().join("a").exists());
 }

@@ -32,7 +32,12 @@ pub struct AccuracyOptions {
 pub fn about() -> String {
     let lines = SCENES.iter();
     lines
-        .map(|scene| format!("  {:<18} {}\n", scene.name, scene.about()))
+        .map(|scene| (scene.name, scene.about()))
+        .chain([(
+            COVERAGE,
+            "how often the intervals of `sandbox estimate` hold the value (some hours)",
+        )])
+        .map(|(name, about)| format!("  {name:<18} {about}\n"))
         .collect()
 }
 

@@ -171,7 +171,8 @@ pub struct TrajectoryOptions {
 #[derive(Args)]
 pub struct ErrorOptions {
     /// A result, and the error that it may have: half the width of its confidence interval, in percent of the value or
-    /// in its unit; may be repeated
+    /// in its unit; may be repeated. In a study: of each combination of settings, which then has as many runs as this
+    /// error needs
     #[arg(long = "error", value_name = "RESULT=ERROR")]
     pub errors: Vec<Wanted>,
     /// The probability that an interval holds the value, percent

@@ -20,7 +20,7 @@ use crate::runs::store::Store;
 pub const EXAMPLES: &str = "\
 Examples:
   sandbox estimate evacuation --error flow_per_s=1% --error density_mean_15s=0.5%
-  sandbox estimate office.json --error evacuation_95_percent_secs=2% --profile walk+sph --out results
+  sandbox estimate scenarios/office.json --error t95_secs=3% --profile walk+sph --out results
   sandbox estimate evacuation --profile 'sf->sph' --error flow_per_s=0.05 --confidence 99 --most-minutes 5";
 
 #[derive(Args)]
@@ -54,6 +54,9 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
     let mut outputs = Outputs::new(program.force || Store::at(&options.out).is_begun());
     let settings = settings(&options.scene, None, &mut outputs)?;
     let question = Question::new(source, settings, options.error.request(), main_memory())?;
+    for note in &question.notes {
+        talk(&format!("note: {note}"));
+    }
     let forecast = Forecast::of(&question, &Store::at(&options.out))?;
     if options.plan {
         return plan(forecast.as_ref(), program.json, &options.out);
@@ -64,11 +67,7 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
     for path in question.files() {
         outputs.reads("the scenario's", path);
     }
-    let name = format!(
-        "{}-{}",
-        question.title[0],
-        question.title[1].replace("->", "-")
-    );
+    let name = question.file_name();
     let pictures = Print::of_program().extensions();
     let pictures = pictures.map(|extension| format!(".{extension}"));
     let tables = [".json", ".csv", "-steps.csv", ".md"].map(str::to_owned);

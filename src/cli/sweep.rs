@@ -56,8 +56,6 @@ pub struct SweepOptions {
     /// Draw over this varied setting, or over two settings as a map [default: the first one with numbers]
     #[arg(long, value_name = "KEY[,KEY]", value_delimiter = ',', conflicts_with_all = ["list", "shard"])]
     pub over: Vec<String>,
-    /// Instead of the study's number of seeds, as many runs and time steps for each combination of settings as these
-    /// errors need (see `sandbox estimate`)
     #[command(flatten)]
     pub error: ErrorOptions,
     #[command(flatten)]
@@ -136,14 +134,15 @@ fn estimate(study: &Study, folder: &Path, options: &SweepOptions) -> Result<(), 
     outputs.check()?;
     let store = Store::open(folder)?;
     let answers = questions.answer(&store, &Watch::new())?;
-    let [json, csv, ..] = questions.files();
-    store.write(&json, format!("{:#}\n", answers.json()).as_bytes())?;
-    store.write(&csv, &answers.csv()?)?;
-    let picture = format!("{}-estimate", study.name);
-    answers.sheet().save(&store.path(&picture))?;
+    let file = |end: &str| format!("{}-estimate.{end}", study.name);
+    store.write(&file("json"), format!("{:#}\n", answers.json()).as_bytes())?;
+    store.write(&file("csv"), &answers.csv()?)?;
+    answers
+        .sheet()
+        .save(&store.path(&format!("{}-estimate", study.name)))?;
     talk(&format!(
         "note: {} and other files written",
-        store.path(&csv).display()
+        store.path(&file("csv")).display()
     ));
     tell(options.json, || answers.json(), || answers.text())?;
     match answers.missed() {

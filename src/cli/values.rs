@@ -57,8 +57,8 @@ pub fn repeats(text: &str) -> Result<usize, &'static str> {
 pub fn runs(text: &str) -> Result<usize, &'static str> {
     within(
         text,
-        2..=100_000,
-        "not a number of runs between 2 and 100000",
+        4..=100_000,
+        "not a number of runs between 4 and 100000",
     )
 }
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::limit::Limit;
-use super::run::{Level, Runs};
+use super::run::Runs;
 use super::series::Reached;
 use super::wanted::Wanted;
 use crate::analysis::statistics::{MeanStd, Share};
@@ -65,10 +65,12 @@ pub struct AtStep {
 pub struct OfDefault {
     /// The error of the step in the mean.
     pub error_of_step: f64,
+    /// Half the width of the interval that the chance of a single run gives.
+    pub chance: f64,
     /// The number of runs for the same error; `None` if the error of the step alone is larger.
     pub runs: Option<f64>,
-    /// Their time on one core, seconds.
-    pub secs: Option<f64>,
+    /// The time of a run on one core, seconds.
+    pub secs: f64,
 }
 
 /// The answer.
@@ -160,9 +162,9 @@ impl Answer {
 impl Row {
     fn of(runs: &Runs, k: usize, wanted: &Wanted) -> Option<Self> {
         let series = runs.series(k);
-        let digest = series.digest()?;
+        let means = series.means()?;
         let confidence = runs.question.request.confidence;
-        let (reached, limit) = digest.reached(confidence);
+        let (reached, limit) = means.reached(confidence);
         let levels = runs.levels.iter().zip(&series.values);
         let steps = levels.filter_map(|(level, values)| {
             let known: Vec<f64> = values.iter().flatten().copied().collect();
@@ -177,9 +179,9 @@ impl Row {
             })
         });
         let error_of_step = limit.error_at(PAPER_TIME_STEP);
+        let chance = means.width(confidence) * means.variance.sqrt();
         let room = reached.error.powi(2) - error_of_step.powi(2);
-        let needed = digest.width(confidence).powi(2) * digest.variance / room;
-        let needed = (room > 0.0).then_some(needed.max(1.0));
+        let needed = (room > 0.0).then(|| (chance * chance / room).max(1.0));
         let missing = series
             .values
             .iter()
@@ -191,14 +193,15 @@ impl Row {
             wanted: wanted.error.to_string(),
             is_reached: reached.error <= wanted.error.of(reached.value),
             order: limit.order,
-            deviation: digest.variance.sqrt(),
+            deviation: means.variance.sqrt(),
             limit: limit.clone(),
             steps: steps.collect(),
             missing: missing.count(),
             default: OfDefault {
                 error_of_step,
+                chance,
                 runs: needed,
-                secs: needed.map(|needed| needed * secs_at(runs, PAPER_TIME_STEP)),
+                secs: secs_at(runs, PAPER_TIME_STEP),
             },
         })
     }
@@ -207,6 +210,5 @@ impl Row {
 /// The time of a run at this step, seconds on one core: that of the runs made, in proportion to their frames.
 fn secs_at(runs: &Runs, step: f64) -> f64 {
     let start = &runs.levels[runs.question.start];
-    let secs = |level: &Level| level.expected_secs * level.rung.step;
-    runs.measured_factor() * secs(start) / step
+    runs.measured_factor() * start.expected_secs * start.rung.step / step
 }

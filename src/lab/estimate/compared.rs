@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::series::{Reached, Series};
 use crate::lab::error::LabError;
 use crate::lab::jobs::read;
-use crate::output::table::Table;
+use crate::output::table::{Table, as_precise};
 
 /// What is read of an answer.
 #[derive(Deserialize)]
@@ -100,22 +100,22 @@ pub fn compared(a: &Value, b: &Value) -> Result<Compared, LabError> {
 }
 
 fn change(a: &Row, b: &Row, confidence: f64, same_seeds: bool) -> Change {
-    let apart = Reached {
-        value: b.reached.value - a.reached.value,
-        error: a.reached.error.hypot(b.reached.error),
-        ..a.reached
-    };
     let paired = same_seeds.then(|| paired(a, b, confidence)).flatten();
-    let reached = paired.unwrap_or(apart);
-    let size = reached.value.abs();
-    let is_clear = size > reached.error;
-    let times = (reached.error / size).powi(2);
+    let (change, error) = match paired {
+        Some(paired) => (paired.value, paired.error),
+        None => (
+            b.reached.value - a.reached.value,
+            a.reached.error.hypot(b.reached.error),
+        ),
+    };
+    let is_clear = change.abs() > error;
+    let times = (error / change).powi(2);
     Change {
         name: a.name.clone(),
         a: a.reached.value,
         b: b.reached.value,
-        change: reached.value,
-        error: reached.error,
+        change,
+        error,
         is_paired: paired.is_some(),
         is_clear,
         times_runs: (!is_clear && times.is_finite()).then_some(times),
@@ -148,7 +148,7 @@ fn paired(a: &Row, b: &Row, confidence: f64) -> Option<Reached> {
     }
     let [x, y, difference] = all.map(|values| {
         let steps = steps.clone();
-        Series { steps, values }.digest()
+        Series { steps, values }.means()
     });
     let (x, y, difference) = (x?, y?, difference?);
     (difference.variance < x.variance + y.variance).then(|| difference.reached(confidence).0)
@@ -171,10 +171,10 @@ impl Compared {
         };
         let table = Table::of(&self.results)
             .column("result", |one| one.name.as_str())
-            .column("A", |one| digits(one.a, one.error))
-            .column("B", |one| digits(one.b, one.error))
-            .column("B − A", |one| digits(one.change, one.error))
-            .column("±", |one| digits(one.error, one.error))
+            .column("A", |one| as_precise(one.a, one.error))
+            .column("B", |one| as_precise(one.b, one.error))
+            .column("B − A", |one| as_precise(one.change, one.error))
+            .column("±", |one| as_precise(one.error, one.error))
             .column(
                 "seeds",
                 |one| if one.is_paired { "same" } else { "different" },
@@ -190,19 +190,5 @@ impl Compared {
             table.text(),
             100.0 * self.confidence
         )
-    }
-}
-
-/// A number with as many decimals as its error has in two digits; all digits without an error.
-pub(super) fn digits(number: f64, error: f64) -> String {
-    let places = error.log10().floor();
-    if !places.is_finite() {
-        return number.to_string();
-    }
-    let decimals = (1.0 - places).clamp(0.0, 12.0) as usize;
-    let text = format!("{number:.decimals$}");
-    match text.trim_matches(['-', '0', '.']).is_empty() {
-        true => text.trim_start_matches('-').to_owned(),
-        false => text,
     }
 }

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::plan::{Goal, Offer, first_round, further, predicted};
 use super::question::{Question, QuestionError};
 use super::run::Runs;
-use super::series::{Digest, Series};
+use super::series::{Means, Series};
 use super::wanted::{Limits, Request, Wanted};
 use crate::analysis::statistics::{MeanStd, shuffled};
 use crate::lab::error::LabError;
@@ -165,7 +165,7 @@ struct Estimate {
     secs: f64,
     is_finished: bool,
     /// What its runs say in the end.
-    digest: Option<Digest>,
+    means: Option<Means>,
 }
 
 fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, LabError> {
@@ -177,15 +177,15 @@ fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, 
         values: all.values[finest..].to_vec(),
     };
     let offers = &runs.offers()[finest..];
-    let means: Vec<MeanStd> = all
+    let at_steps: Vec<MeanStd> = all
         .values
         .iter()
         .filter_map(|values| MeanStd::of(&values.iter().flatten().copied().collect::<Vec<_>>()))
         .collect();
-    let Some((finest_mean, digest)) = means.first().zip(all.digest()) else {
+    let Some((finest_mean, whole)) = at_steps.first().zip(all.means()) else {
         return Err(LabError::missing(&question.title[0], &wanted.name));
     };
-    let reference = digest.reached(CONFIDENCE).0;
+    let reference = whole.reached(CONFIDENCE).0;
     let estimate = |seed: usize| {
         let order = shuffled(pool.seeds.min(pool.reference), seed as u64);
         repeated(
@@ -203,8 +203,8 @@ fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, 
     // Each estimate predicts the number of runs of the next one.
     let pairs = estimates.iter().zip(estimates.iter().cycle().skip(1));
     let right = pairs.filter(|(before, after)| {
-        let known = before.digest.clone().map(|digest| Goal {
-            digest,
+        let known = before.means.clone().map(|means| Goal {
+            means,
             tolerance: wanted.error,
         });
         let start = question.start - finest;
@@ -216,7 +216,7 @@ fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, 
     });
     let right = right.count() as f64;
     let allowed = wanted.error.of(reference.value);
-    let known = means.iter().zip(offers).filter_map(|(mean, offer)| {
+    let known = at_steps.iter().zip(offers).filter_map(|(mean, offer)| {
         let room = allowed.powi(2) - (mean.mean - reference.value).powi(2);
         let runs = ((NORMAL * mean.std()?).powi(2) / room).ceil().max(2.0);
         (room > 0.0).then_some([runs, runs * offer.secs])
@@ -260,16 +260,16 @@ fn repeated(
                 .map(|(values, &count)| order[..count].iter().map(|&k| values[k]).collect())
                 .collect(),
         };
-        let Some(digest) = drawn.digest() else {
+        let Some(means) = drawn.means() else {
             return Estimate {
                 held: [false; 2],
                 runs: 0,
                 secs: 0.0,
                 is_finished: false,
-                digest: None,
+                means: None,
             };
         };
-        let next = next(&digest, &counts, offers, wanted);
+        let next = next(&means, &counts, offers, wanted);
         let more = next.clone().unwrap_or_default();
         let asked: Vec<usize> = counts
             .iter()
@@ -278,7 +278,7 @@ fn repeated(
             .collect();
         let is_finished = next.is_none();
         if is_finished || asked.iter().any(|&count| count > order.len()) {
-            let reached = digest.reached(CONFIDENCE).0;
+            let reached = means.reached(CONFIDENCE).0;
             let secs = counts
                 .iter()
                 .zip(offers)
@@ -288,7 +288,7 @@ fn repeated(
                 runs: counts.iter().sum(),
                 secs: secs.sum(),
                 is_finished,
-                digest: Some(digest),
+                means: Some(means),
             };
         }
         counts = asked;
@@ -296,14 +296,9 @@ fn repeated(
 }
 
 /// The further runs of an estimate.
-fn next(
-    digest: &Digest,
-    counts: &[usize],
-    offers: &[Offer],
-    wanted: &Wanted,
-) -> Option<Vec<usize>> {
+fn next(means: &Means, counts: &[usize], offers: &[Offer], wanted: &Wanted) -> Option<Vec<usize>> {
     let goal = Goal {
-        digest: digest.clone(),
+        means: means.clone(),
         tolerance: wanted.error,
     };
     let offers = offers.iter().zip(counts);

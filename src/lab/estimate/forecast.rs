@@ -79,9 +79,9 @@ impl Forecast {
                 steps: steps.clone(),
                 values: values.collect(),
             };
-            let digest = series.digest()?;
+            let means = series.means()?;
             Some(Goal {
-                digest,
+                means,
                 tolerance: wanted.error,
             })
         });

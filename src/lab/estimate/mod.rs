@@ -29,5 +29,5 @@ pub use plan::{Goal, Offer, PILOT, further, predicted};
 pub use question::{Question, QuestionError, Rung};
 pub use rows::{Answers, Questions};
 pub use run::{Look, Runs, run};
-pub use series::{Digest, Reached, Series};
+pub use series::{Means, Reached, Series};
 pub use wanted::{Limits, Request, Tolerance, Wanted};

@@ -2,7 +2,6 @@
 
 use super::answer::{Answer, AtStep, Row};
 use super::run::Runs;
-use crate::engine::clock::PAPER_TIME_STEP;
 use crate::lab::gallery::{around, band, curve, spanned};
 use crate::output::colors::light;
 use crate::output::plot::{
@@ -62,7 +61,7 @@ fn by_round(runs: &Runs, k: usize, row: &Row) -> Panel {
     let reached = runs
         .looks
         .iter()
-        .filter_map(|look| Some((look.runs.iter().sum::<usize>() as f64, look.reached[k]?)));
+        .map(|look| (look.runs.iter().sum::<usize>() as f64, look.reached[k]));
     let reached: Vec<_> = reached.collect();
     let line = |of: fn(&super::Reached) -> f64, number: usize, label: &str| {
         let points = reached.iter().map(|(runs, reached)| [*runs, of(reached)]);
@@ -92,31 +91,17 @@ fn by_time(runs: &Runs, k: usize, row: &Row) -> Panel {
             .map(|(level, runs)| level.expected_secs * factor * *runs as f64)
             .sum()
     };
-    let made = runs
-        .looks
-        .iter()
-        .filter_map(|look| Some([secs(&look.runs), look.reached[k]?.error]));
+    let looks = runs.looks.iter();
+    let made = looks.map(|look| [secs(&look.runs), look.reached[k].error]);
     let made: Vec<[f64; 2]> = made.collect();
-    let own = row
-        .default
-        .secs
-        .zip(row.default.runs)
-        .map(|(secs, runs)| secs / runs);
-    let start = &runs.levels[runs.question.start];
-    let own = own.unwrap_or(factor * start.expected_secs * start.rung.step / PAPER_TIME_STEP);
-    let spread = row.reached.seeds.max(row.reached.error * 0.1);
-    let all = row.default.runs.unwrap_or(1.0);
-    // ± of the default step with its error: chance falls with the number of runs, the error of the step stays.
-    let room = (row.reached.error.powi(2) - row.default.error_of_step.powi(2)).max(0.0);
-    let chance = if row.default.runs.is_some() {
-        room * all
-    } else {
-        spread.powi(2) * all
-    };
+    // Chance falls with the number of runs, the error of the step stays.
+    let of = row.default;
     let default = (0..24).map(|power| {
         let runs = 1.5_f64.powi(power);
-        let error = (chance / runs + row.default.error_of_step.powi(2)).sqrt();
-        [own * runs, error]
+        [
+            runs * of.secs,
+            (of.chance / runs.sqrt()).hypot(of.error_of_step),
+        ]
     });
     let last = made.last().map_or(1.0, |point| point[0]);
     let default: Vec<[f64; 2]> = default.filter(|point| point[0] <= 3.0 * last).collect();

@@ -6,7 +6,7 @@
 //! depend on clocks and threads.
 
 use super::limit::Limit;
-use super::series::Digest;
+use super::series::Means;
 use super::wanted::Tolerance;
 
 /// The runs of the first round at each of its two steps.
@@ -30,7 +30,7 @@ pub struct Offer {
 /// A measurement with the error asked for.
 pub struct Goal {
     /// Its runs so far.
-    pub digest: Digest,
+    pub means: Means,
     /// The error asked for.
     pub tolerance: Tolerance,
 }
@@ -41,12 +41,12 @@ pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<
     let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
     let expected: Vec<Limit> = goals
         .iter()
-        .map(|goal| Limit::of(&goal.digest.levels, goal.digest.variance))
+        .map(|goal| Limit::of(&goal.means.levels, goal.means.variance))
         .collect();
     let excess = |plan: &[usize]| -> f64 {
         let goals = goals.iter().zip(&expected);
         let after = goals.map(|(goal, expected)| {
-            let after = goal.digest.with(expected, &steps, plan);
+            let after = goal.means.with(expected, &steps, plan);
             after.excess(goal.tolerance, confidence)
         });
         after.sum()
@@ -108,7 +108,7 @@ pub fn first_round(offers: usize, start: usize) -> Vec<usize> {
 pub fn predicted(known: &[Goal], offers: &[Offer], start: usize, confidence: f64) -> Vec<usize> {
     let expected: Vec<Limit> = known
         .iter()
-        .map(|goal| Limit::of(&goal.digest.levels, goal.digest.variance))
+        .map(|goal| Limit::of(&goal.means.levels, goal.means.variance))
         .collect();
     let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
     let mut offers = offers.to_vec();
@@ -119,7 +119,7 @@ pub fn predicted(known: &[Goal], offers: &[Offer], start: usize, confidence: f64
     loop {
         let counts: Vec<usize> = offers.iter().map(|offer| offer.runs).collect();
         let goals = known.iter().zip(&expected).map(|(goal, expected)| Goal {
-            digest: goal.digest.afresh(expected, &steps, &counts),
+            means: goal.means.afresh(expected, &steps, &counts),
             tolerance: goal.tolerance,
         });
         let goals: Vec<Goal> = goals.collect();

@@ -61,6 +61,8 @@ pub struct Question {
     pub settings: Vec<String>,
     /// The first seed; the runs at each step have this seed and those after it.
     pub first_seed: u64,
+    /// Notes on the scenario.
+    pub notes: Vec<String>,
     /// The steps on offer, from the finest to the coarsest.
     pub rungs: Vec<Rung>,
     /// The number of the step to begin with.
@@ -107,6 +109,7 @@ impl Question {
         let scenario = case.scenario().map_err(RunError::from)?;
         let [title, profile] = [&scenario.name, &scenario.profile_name].map(String::clone);
         let first_seed = scenario.seed;
+        let notes = scenario.notes.clone();
         let (rungs, start) = rungs(&scenario);
         let run = Run::new(scenario).map_err(RunError::from)?;
         let names = Summary::of(&run).metrics.into_keys();
@@ -132,6 +135,7 @@ impl Question {
             title: [title, profile],
             settings: typed,
             first_seed,
+            notes,
             rungs,
             start,
             case,
@@ -153,6 +157,28 @@ impl Question {
             set("seed", json!(seed)),
         ];
         self.case.with(settings, &Memory::new(self.memory))
+    }
+
+    /// A name for files with the answer: scenario, profile and settings, with - for all that is not fit for a file's
+    /// name.
+    pub fn file_name(&self) -> String {
+        /// Names are cut here.
+        const LONGEST: usize = 100;
+        let parts = self.title.iter().chain(&self.settings);
+        let text = parts.map(String::as_str).collect::<Vec<_>>().join("-");
+        let fit = |c: char| c.is_alphanumeric() || "_=.+".contains(c);
+        let words = text.split(|c| !fit(c)).filter(|word| !word.is_empty());
+        let name = words.collect::<Vec<_>>().join("-");
+        let name: String = name
+            .trim_start_matches(['.', '-'])
+            .chars()
+            .take(LONGEST)
+            .collect();
+        if name.is_empty() {
+            "estimate".to_owned()
+        } else {
+            name
+        }
     }
 
     /// The files that the scenario is read from.

@@ -1,10 +1,9 @@
 //! The answer as text, Markdown and CSV.
 
 use super::answer::{ABOUT, Answer, Row};
-use super::compared::digits;
 use crate::analysis::round;
 use crate::lab::error::LabError;
-use crate::output::table::{Columns, Table};
+use crate::output::table::{Columns, Table, as_precise};
 
 /// A row at one of its steps.
 type Step<'a> = (&'a Row, &'a super::answer::AtStep);
@@ -99,13 +98,13 @@ impl Answer {
         for row in self.results.iter().filter(|row| row.reached.error > 0.0) {
             let default = row.default;
             let error = row.written(default.error_of_step);
-            text += &match default.runs.zip(default.secs) {
-                Some((runs, secs)) => format!(
+            text += &match default.runs {
+                Some(runs) => format!(
                     " The default step of 0.02 s has an error of {error} in {}: its runs alone, without those that \
                      show this error, would have been {} and {} s.",
                     row.name,
                     runs.ceil(),
-                    round::brief(secs)
+                    round::brief(runs * default.secs)
                 ),
                 None => format!(
                     " The default step of 0.02 s has an error of {error} in {}: no number of runs gives ± {}.",
@@ -165,7 +164,7 @@ fn by_step<'r>(rows: &'r [Step<'r>]) -> Columns<'r, Step<'r>> {
 impl Row {
     /// A number of this result with as many decimals as its error has in two digits.
     pub fn written(&self, number: f64) -> String {
-        digits(number, self.reached.error)
+        as_precise(number, self.reached.error)
     }
 
     /// Whether the error is as small as asked for.

@@ -9,7 +9,7 @@ use super::wanted::Request;
 use crate::lab::error::LabError;
 use crate::lab::gallery::{spanned, with_legend};
 use crate::lab::sweep::{Cell, Study, plain};
-use crate::output::plot::{Axis, BLACK, Mark, Panel, Point, Sheet, Style};
+use crate::output::plot::{Axis, BLACK, Mark, Panel, Point, Print, Sheet, Style};
 use crate::output::table::{Columns, Table};
 use crate::runs::identity::ENGINE;
 use crate::runs::job::Listener;
@@ -53,8 +53,11 @@ impl<'a> Questions<'a> {
     }
 
     /// The names of the files with the answers.
-    pub fn files(&self) -> [String; 4] {
-        ["json", "csv", "svg", "png"].map(|end| format!("{}-estimate.{end}", self.study.name))
+    pub fn files(&self) -> Vec<String> {
+        let pictures = Print::of_program().extensions();
+        let ends = ["json", "csv"].into_iter().chain(pictures);
+        ends.map(|end| format!("{}-estimate.{end}", self.study.name))
+            .collect()
     }
 
     /// Makes the runs of all rows, row by row.
@@ -69,7 +72,8 @@ impl<'a> Questions<'a> {
             .enumerate()
             .map(|(k, (cell, question))| {
                 listener.notes(&format!("row {} of {all}: {cell}", k + 1));
-                let runs = run(question, store, listener)?;
+                let runs = run(question, store, listener)
+                    .map_err(|error| LabError::Failed(format!("{cell}: {error}")))?;
                 Ok((*cell, Answer::of(&runs)))
             });
         Ok(Answers {

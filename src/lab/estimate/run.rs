@@ -4,13 +4,13 @@ use std::time::Instant;
 
 use rayon::current_num_threads;
 
-use super::compared::digits;
 use super::plan::{Goal, Offer, first_round, further};
 use super::question::{Question, Rung};
 use super::series::{Reached, Series};
 use crate::lab::error::LabError;
 use crate::lab::jobs::each;
 use crate::lab::sweep::number;
+use crate::output::table::as_precise;
 use crate::runs::case::{Case, RunResult};
 use crate::runs::drive::End;
 use crate::runs::error::RunError;
@@ -19,7 +19,7 @@ use crate::runs::store::Store;
 
 /// The runs at one time step, in the order of their seeds.
 #[derive(Debug, Clone)]
-pub struct Level {
+pub struct StepRuns {
     /// The step.
     pub rung: Rung,
     /// The results; the error message of runs that failed.
@@ -33,8 +33,8 @@ pub struct Level {
 pub struct Look {
     /// The number of runs at each step.
     pub runs: Vec<usize>,
-    /// What is reached for each wanted result; `None` before it has two values at one step.
-    pub reached: Vec<Option<Reached>>,
+    /// What is reached for each wanted result.
+    pub reached: Vec<Reached>,
 }
 
 /// All runs of an estimate.
@@ -42,7 +42,7 @@ pub struct Runs<'a> {
     /// The question.
     pub question: &'a Question,
     /// The runs at each step on offer, from the finest to the coarsest.
-    pub levels: Vec<Level>,
+    pub levels: Vec<StepRuns>,
     /// The state after each round.
     pub looks: Vec<Look>,
     /// Why no more runs were made, if an error is larger than asked for.
@@ -87,7 +87,7 @@ impl<'a> Runs<'a> {
     pub(super) fn none(question: &'a Question) -> Result<Self, LabError> {
         let level = |&rung: &Rung| {
             let case = question.case(rung, 0);
-            Ok(Level {
+            Ok(StepRuns {
                 rung,
                 results: Vec::new(),
                 expected_secs: case.map_err(|error| failed(question, error))?.expected_secs,
@@ -220,7 +220,7 @@ impl<'a> Runs<'a> {
 
     /// The steps with the number of their runs.
     pub fn offers(&self) -> Vec<Offer> {
-        let offer = |level: &Level| Offer {
+        let offer = |level: &StepRuns| Offer {
             step: level.rung.step,
             secs: level.expected_secs,
             runs: level.results.len(),
@@ -233,7 +233,7 @@ impl<'a> Runs<'a> {
         let wanted = self.question.request.wanted.iter().enumerate();
         let goal = |(k, wanted): (usize, &super::Wanted)| {
             Some(Goal {
-                digest: self.series(k).digest()?,
+                means: self.series(k).means()?,
                 tolerance: wanted.error,
             })
         };
@@ -244,20 +244,18 @@ impl<'a> Runs<'a> {
     fn look(&mut self) -> Result<(), LabError> {
         let confidence = self.question.request.confidence;
         let count = self.question.request.wanted.len();
-        let digests: Vec<_> = (0..count).map(|k| self.series(k).digest()).collect();
-        if let Some(k) = digests.iter().position(Option::is_none) {
+        let means: Vec<_> = (0..count).map(|k| self.series(k).means()).collect();
+        if let Some(k) = means.iter().position(Option::is_none) {
             return Err(LabError::Data(self.without_values(k)));
         }
-        let reached = digests.iter().flatten();
+        let reached = means.iter().flatten();
         self.looks.push(Look {
             runs: self
                 .levels
                 .iter()
                 .map(|level| level.results.len())
                 .collect(),
-            reached: reached
-                .map(|digest| Some(digest.reached(confidence).0))
-                .collect(),
+            reached: reached.map(|means| means.reached(confidence).0).collect(),
         });
         Ok(())
     }
@@ -294,18 +292,17 @@ impl<'a> Runs<'a> {
             return String::new();
         };
         let wanted = self.question.request.wanted.iter().zip(&look.reached);
-        let results = wanted.filter_map(|(wanted, reached)| {
-            let reached = (*reached)?;
+        let results = wanted.map(|(wanted, reached)| {
             let [value, error] =
-                [reached.value, reached.error].map(|number| digits(number, reached.error));
-            Some(format!(
+                [reached.value, reached.error].map(|number| as_precise(number, reached.error));
+            format!(
                 "{} {value} ± {error}{}, wanted {}",
                 wanted.name,
                 reached
                     .percent()
                     .map_or(String::new(), |part| format!(" ({part})")),
                 wanted.error
-            ))
+            )
         });
         let runs: usize = look.runs.iter().sum();
         format!(

@@ -29,9 +29,9 @@ pub struct Reached {
     pub step: f64,
 }
 
-/// The runs of a measurement in short: means and one variance.
+/// The runs of a measurement in short: the mean at each step, and one variance.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Digest {
+pub struct Means {
     /// The levels with values.
     pub levels: Vec<Level>,
     /// The variance of single runs, over all levels.
@@ -50,8 +50,8 @@ impl Reached {
 }
 
 impl Series {
-    /// The values in short; `None` with fewer than two values at any step.
-    pub fn digest(&self) -> Option<Digest> {
+    /// Mean at each step and variance; `None` with fewer than two values at any step.
+    pub fn means(&self) -> Option<Means> {
         let (mut levels, mut squares, mut degrees) = (Vec::new(), 0.0, 0);
         for (&step, values) in self.steps.iter().zip(&self.values) {
             let values: Vec<f64> = values.iter().flatten().copied().collect();
@@ -63,7 +63,7 @@ impl Series {
             degrees += runs - 1;
             squares += of.std().map_or(0.0, |std| (runs - 1) as f64 * std * std);
         }
-        (degrees > 0).then(|| Digest {
+        (degrees > 0).then(|| Means {
             levels,
             variance: squares / degrees as f64,
             degrees,
@@ -71,7 +71,7 @@ impl Series {
     }
 }
 
-impl Digest {
+impl Means {
     /// The half width of a confidence interval, in standard errors.
     pub fn width(&self, confidence: f64) -> f64 {
         student(self.degrees, confidence).unwrap_or(f64::INFINITY)
@@ -101,7 +101,7 @@ impl Digest {
         }
     }
 
-    /// A digest of these numbers of runs at each of `steps`, whose means are as expected and whose spread is known.
+    /// Means of these numbers of runs at each of `steps`, whose means are as expected and whose spread is known.
     pub fn afresh(&self, expected: &Limit, steps: &[f64], counts: &[usize]) -> Self {
         let degrees = counts.iter().map(|runs| runs.saturating_sub(1)).sum();
         let none = Self {

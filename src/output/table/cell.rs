@@ -45,6 +45,20 @@ impl Cell {
     }
 }
 
+/// A number with as many decimals as its error has in two digits; all digits without an error.
+pub fn as_precise(number: f64, error: f64) -> String {
+    let places = error.log10().floor();
+    if !places.is_finite() {
+        return number.to_string();
+    }
+    let decimals = (1.0 - places).clamp(0.0, 12.0) as usize;
+    let text = format!("{number:.decimals$}");
+    match text.trim_matches(['-', '0', '.']).is_empty() {
+        true => text.trim_start_matches('-').to_owned(),
+        false => text,
+    }
+}
+
 impl From<String> for Cell {
     fn from(text: String) -> Self {
         Self::Text(text)

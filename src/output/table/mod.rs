@@ -7,7 +7,7 @@
 
 mod cell;
 
-pub use cell::Cell;
+pub use cell::{Cell, as_precise};
 
 use rayon::prelude::*;
 use serde::Serialize;
