@@ -14,13 +14,13 @@ use crate::common::bounded;
 use crate::common::documents::{count, invalid_value, replace};
 use crate::common::program::{run_in, stderr};
 
-/// People who enter one by one and walk toward smaller y. Lengths are in units of `unit` meters.
-fn people(head: &str, unit: f64) -> String {
+/// People who enter one by one at `x` meters and walk toward smaller y. Lengths are in units of `unit` meters.
+fn people(head: &str, x: f64, unit: f64) -> String {
     let mut text = head.to_owned();
     for person in 0..5 {
         for frame in 0..=60 {
             let y = (3.0 - f64::from(frame) / 25.0) / unit;
-            text += &format!("{person} {} {} {y} 0\n", 25 * person + frame, 0.3 / unit);
+            text += &format!("{person} {} {} {y} 0\n", 25 * person + frame, x / unit);
         }
     }
     text
@@ -29,11 +29,21 @@ fn people(head: &str, unit: f64) -> String {
 #[test]
 fn checks_of_the_built_in_suites_name_all_runs_and_no_unknown_quantities() {
     let data = tempfile::tempdir().unwrap();
-    let bottleneck = people("# framerate: 25 fps\n# id frame x/m y/m z/m\n", 1.0);
-    fs::write(data.path().join("040_c_56_h-.txt"), bottleneck).unwrap();
-    let corridor = people("# id frame x y z\n", 0.01);
-    fs::write(data.path().join("uo-180-180-180.txt"), corridor).unwrap();
-    for (name, count) in [("verification", 26), ("validation", 11)] {
+    let bottleneck = people("# framerate: 25 fps\n# id frame x/m y/m z/m\n", 0.3, 1.0);
+    let in_centimeters = people("# id frame x y z\n", 0.3, 0.01);
+    let corner = people("# framerate: 16\n# id frame x y z\n", -1.5, 1.0);
+    for (file, text) in [
+        ("040_c_56_h-.txt", &bottleneck),
+        ("uo-180-180-180.txt", &in_centimeters),
+        ("uo-180-180-120.txt", &in_centimeters),
+        ("uo-180-180-095.txt", &in_centimeters),
+        ("bo-360-090-090.txt", &in_centimeters),
+        ("bo-360-160-160.txt", &in_centimeters),
+        ("corner.txt", &corner),
+    ] {
+        fs::write(data.path().join(file), text).unwrap();
+    }
+    for (name, count) in [("verification", 26), ("validation", 22)] {
         let suite = Suite::built_in(name).unwrap();
         assert_eq!(suite.cases.len(), count, "{name}");
         let chosen = Chosen {
