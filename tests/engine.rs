@@ -36,6 +36,7 @@ mod from_data;
 mod front;
 mod geometry;
 mod geometry_robustness;
+mod headings;
 mod identifiability;
 mod journeys;
 mod kernel;

@@ -22,6 +22,7 @@ fn listed(agents: &mut Agents) -> Neighbors {
     let ranges = Ranges {
         support: 1.0,
         avoidance: Some(5.0),
+        sight: None,
         wide: Some(5.0),
         longest_step: 0.036,
         drift: 0.5 * SKIN,

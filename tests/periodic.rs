@@ -78,7 +78,7 @@ fn the_density_of_a_lattice_is_the_same_everywhere() {
 
 #[test]
 fn forces_are_those_in_the_middle_of_three_crowds() {
-    let laws = ["headway", "density-ahead", "drag"].map(|law| ("sph", law));
+    let laws = ["headway", "density-ahead", "drag", "headings"].map(|law| ("sph", law));
     for (profile, law) in NAMES
         .map(|profile| (profile, "none"))
         .into_iter()

@@ -66,6 +66,7 @@ fn needs_follow_from_the_profiles() {
         rvo: false,
         social: false,
         walking: false,
+        headings: false,
         avoidance: None,
         removal: false,
         paces: false,

@@ -114,7 +114,7 @@ fn walking(law: WalkingLawKind) -> Parameters {
     };
     match law {
         WalkingLawKind::None => {}
-        WalkingLawKind::Headway => all.headway_time = Some(0.01),
+        WalkingLawKind::Headway | WalkingLawKind::Headings => all.headway_time = Some(0.01),
         WalkingLawKind::DensityAhead => all.jam_density = Some(0.01),
         WalkingLawKind::Drag => all.drag_per_density = Some(1e3),
     }

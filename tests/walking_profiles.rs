@@ -7,7 +7,6 @@ use crate::common::{
 };
 use sandbox::analysis::stability::time_step;
 use sandbox::engine::agents::NewAgent;
-use sandbox::engine::forces::walking::lost_velocity;
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
 use sandbox::engine::profile::{Blend, BlendStep};
@@ -31,7 +30,12 @@ fn the_law_adds_to_the_goal_force_what_lowers_its_speed() {
         let terms = breakdown.profiles[0].accelerations;
         let i = simulation.frame().agents.index_of(id).unwrap();
         let frame = simulation.frame();
-        let wish = frame.fields.preferred_velocity[i] + lost_velocity(&frame, i);
+        let wish = frame.fields.preferred_velocity[i]
+            + simulation
+                .blend(i)
+                .walking_law()
+                .unwrap()
+                .lost_velocity(&frame, i);
         let velocity = Vector::from(breakdown.velocity);
         let expected = (wish - velocity) * 2.0 / breakdown.mass;
         let sum = terms.goal.unwrap() + terms.walking.unwrap();
@@ -145,7 +149,7 @@ fn agents_hold_their_speed_until_the_next_coarse_frame() {
 
 #[test]
 fn a_lane_with_a_law_is_the_same_on_any_number_of_threads() {
-    for law in LOOKING {
+    for law in LOOKING.into_iter().chain([WalkingLawKind::Headings]) {
         let simulated = |threads| {
             on_threads(threads, || {
                 let mut scene = scene(vec![room(12.0, 1.2)], blend_with("rvo->sph", &with(law)));
@@ -162,15 +166,17 @@ fn a_lane_with_a_law_is_the_same_on_any_number_of_threads() {
 
 #[test]
 fn a_resumed_run_with_a_law_goes_on_with_the_same_bits() {
-    let scene = crowd(WalkingLawKind::Headway, 9);
-    let mut whole = Simulation::new(scene.clone()).unwrap();
-    run(&mut whole, 17);
-    whole.evaluate().unwrap();
-    let mut resumed = Simulation::resumed(scene, whole.state()).unwrap();
-    for simulation in [&mut whole, &mut resumed] {
-        run(simulation, 30);
+    for law in [WalkingLawKind::Headway, WalkingLawKind::Headings] {
+        let scene = crowd(law, 9);
+        let mut whole = Simulation::new(scene.clone()).unwrap();
+        run(&mut whole, 17);
+        whole.evaluate().unwrap();
+        let mut resumed = Simulation::resumed(scene, whole.state()).unwrap();
+        for simulation in [&mut whole, &mut resumed] {
+            run(simulation, 30);
+        }
+        assert_eq!(bits(&whole), bits(&resumed), "{law:?}");
     }
-    assert_eq!(bits(&whole), bits(&resumed));
 }
 
 #[test]

@@ -85,6 +85,9 @@ pub struct Agents {
     /// The speed that the walking law allows, held until the next coarse frame, m/s, infinite without a law or agents
     /// in view; `None` for agents that entered since. Empty if no profile has a law that looks ahead.
     pub allowed_speed: Vec<Option<f64>>,
+    /// The heading that the agent follows by the law of headings, held until the next coarse frame: its number, counted
+    /// from the one along the way, positive to its left. Empty if no profile has this law.
+    pub heading: Vec<i8>,
     /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
     /// only, otherwise empty.
     pub acceleration_before: Vec<Option<Vector>>,
@@ -146,10 +149,11 @@ impl Agents {
     }
 
     /// The arrays that may be empty, or lack agents that entered since.
-    fn sometimes(&mut self) -> [&mut dyn Column; 11] {
+    fn sometimes(&mut self) -> [&mut dyn Column; 12] {
         [
             &mut self.avoidance,
             &mut self.allowed_speed,
+            &mut self.heading,
             &mut self.acceleration_before,
             &mut self.route,
             &mut self.aim,

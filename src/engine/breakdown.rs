@@ -1,8 +1,10 @@
 //! The acceleration of one agent, term by term, computed with the engine's force functions on the frozen frame.
 
+mod heading;
 mod text;
 mod visit;
 
+pub use heading::{HeadingChoice, HeadingSeen};
 pub use visit::{Alternative, Doing, Visit, Why};
 
 use serde::Serialize;
@@ -55,6 +57,9 @@ pub struct Breakdown {
     /// The place that it visits; `None` without a journey.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub visit: Option<Visit>,
+    /// The headings between which it chooses; `None` without the walking law `headings`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub choice: Option<HeadingChoice>,
     /// The forces from outside this crate.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub own_forces: Vec<OwnForce>,
@@ -173,6 +178,7 @@ impl Breakdown {
             walks_from_secs: (agents.walks_from.get(i).copied())
                 .filter(|&from| frame.clock.time() < from),
             visit: Visit::of(simulation, i),
+            choice: HeadingChoice::of(simulation, i),
             own_forces: own_forces.collect(),
             neighbors,
             walls: wall_terms(simulation, i),

@@ -17,7 +17,7 @@ use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::forces::viscosity::Viscosity;
-use crate::engine::forces::walking::{self, WalkingLaw};
+use crate::engine::forces::walking::WalkingLaw;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::BLOCK;
@@ -240,10 +240,10 @@ impl Profile {
                     take(|t| &mut t.walking, i, drag.acceleration(frame, i));
                 }
             }
-            (Some(_), Some(goal)) => {
+            (Some(law), Some(goal)) => {
                 let rate = goal.rate();
                 for i in agents.clone() {
-                    let lost = walking::lost_velocity(frame, i);
+                    let lost = law.lost_velocity(frame, i);
                     take(|t| &mut t.walking, i, lost * (rate / frame.agents.mass[i]));
                 }
             }

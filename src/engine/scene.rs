@@ -1,5 +1,6 @@
 //! A scene: the complete input of a simulation.
 
+mod needs;
 mod region;
 
 use std::sync::Arc;
@@ -8,7 +9,6 @@ use crate::engine::agents::{Agents, NewAgent};
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::Clock;
 use crate::engine::entrance::{Entrance, Latecomer};
-use crate::engine::forces::near::Wanted;
 use crate::engine::forces::own::Force;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::forces::walking::WalkingLaw;
@@ -23,6 +23,7 @@ use crate::engine::profile::{Blend, Override, Profile};
 use crate::engine::traits::Traits;
 use crate::engine::ways::Ways;
 
+pub use needs::Needs;
 pub use region::Region;
 
 /// How the state is advanced by one frame (§5).
@@ -67,6 +68,8 @@ pub struct Group {
     pub journey: Option<u16>,
     /// The direction in which its agents walk, of length 1, instead of to their goals.
     pub direction: Option<Vector>,
+    /// How much its agents hurry, from 0 (calm) to 1 (told to hurry): read by the law of headings.
+    pub motivation: f64,
     /// The properties that are drawn for each of its agents.
     pub traits: Traits,
 }
@@ -81,6 +84,7 @@ impl Group {
             counted: true,
             journey: None,
             direction: None,
+            motivation: 0.0,
             traits: Traits::default(),
         }
     }
@@ -231,33 +235,6 @@ impl Scene {
         steps.map(|step| &step.profile)
     }
 
-    /// The quantities that this scene needs; only these are computed.
-    pub fn needs(&self) -> Needs {
-        let wanted = self.profiles().map(Profile::wanted);
-        let pairs = wanted.fold(Wanted::default(), Wanted::with);
-        let mut groups = self.groups.iter();
-        let blending = groups.any(|group| group.blend.depends_on_density());
-        let own = self.own_forces.iter().any(|force| force.needs_density());
-        let mut laws = self.profiles().filter_map(|profile| profile.walking);
-        let law = laws.any(|law| law.needs_density());
-        Needs {
-            density: pairs.pressure || pairs.viscosity || blending || law || own,
-            pairs,
-            rvo: self.groups.iter().any(|group| group.blend.rvo().is_some()),
-            social: !self.social_forces().is_empty(),
-            walking: !self.walking_laws().is_empty(),
-            avoidance: (self.profiles())
-                .filter_map(|profile| profile.navigation.avoidance_radius())
-                .reduce(f64::max),
-            removal: self
-                .groups
-                .iter()
-                .any(|group| group.removal_radius.is_some()),
-            paces: !self.journeys.zones.is_empty(),
-            directions: self.groups.iter().any(|group| group.direction.is_some()),
-        }
-    }
-
     /// The speed at which agent `i` wants to walk at `time` seconds, m/s.
     pub fn pace(&self, agents: &Agents, i: usize, time: f64) -> f64 {
         if agents.walks_from.get(i).is_some_and(|&from| time < from) {
@@ -299,6 +276,14 @@ impl Scene {
         different(laws.filter(WalkingLaw::looks_ahead))
     }
 
+    /// How much agent `i` hurries at `time` seconds, from 0 to 1.
+    pub fn motivation(&self, agents: &Agents, i: usize, time: f64) -> f64 {
+        let here = self.journeys.motivation(agents.position[i], time);
+        self.groups[usize::from(agents.group[i])]
+            .motivation
+            .max(here)
+    }
+
     /// The largest preferred speed of all agents in any zone, m/s.
     pub fn highest_pace(&self, agents: &Agents) -> f64 {
         let own = agents.preferred_speed.iter().copied();
@@ -328,6 +313,7 @@ impl Scene {
         Ranges {
             support,
             avoidance: needs.avoidance,
+            sight: self.sight(agents),
             wide: (needs.social || needs.walking).then(|| {
                 let social = self.social_forces().into_iter();
                 let pace = self.highest_pace(agents);
@@ -352,45 +338,4 @@ fn different<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
         }
     }
     different
-}
-
-/// The quantities that a scene needs, decided once. No other quantity is computed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Needs {
-    /// Density, read in every frame by SPH forces, blending or forces from outside this crate.
-    pub density: bool,
-    /// Sums over near neighbors that some profile reads.
-    pub pairs: Wanted,
-    /// Some profile uses RVO.
-    pub rvo: bool,
-    /// Some profile uses social forces.
-    pub social: bool,
-    /// Some profile has a walking law that looks ahead.
-    pub walking: bool,
-    /// The largest avoidance radius, meters.
-    pub avoidance: Option<f64>,
-    /// Some agents leave at their goal.
-    pub removal: bool,
-    /// Agents have preferred speeds of their own, or do not walk all the time.
-    pub paces: bool,
-    /// Some agents walk in a direction, not to a goal.
-    pub directions: bool,
-}
-
-impl Needs {
-    /// The union of two needs.
-    pub fn with(&self, other: &Self) -> Self {
-        let radii = self.avoidance.into_iter().chain(other.avoidance);
-        Self {
-            density: self.density || other.density,
-            pairs: self.pairs.with(other.pairs),
-            rvo: self.rvo || other.rvo,
-            social: self.social || other.social,
-            walking: self.walking || other.walking,
-            avoidance: radii.reduce(f64::max),
-            removal: self.removal || other.removal,
-            paces: self.paces || other.paces,
-            directions: self.directions || other.directions,
-        }
-    }
 }

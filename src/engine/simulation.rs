@@ -12,6 +12,7 @@ mod loads;
 mod passing;
 mod queues;
 mod schedule;
+mod situation;
 mod stages;
 mod state;
 mod trips;
@@ -35,13 +36,12 @@ use crate::engine::clock::Clock;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::forces::walking::WalkingLaw;
 use crate::engine::frame::{Fields, Frame};
-use crate::engine::journeys::Status;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::Neighbors;
 use crate::engine::pairs::{Packed, Precision};
 use crate::engine::profile::{Blend, Override};
 use crate::engine::scene::{Needs, Scene};
-use choice::Chooser;
+use crate::engine::ways::Narrowings;
 
 /// A crowd in a scene, simulated frame by frame.
 ///
@@ -68,6 +68,8 @@ struct Fixed {
     social_forces: Vec<SocialForce>,
     /// The distinct walking laws of the scene that look ahead.
     walking_laws: Vec<WalkingLaw>,
+    /// The narrowings that walking laws of the scene heed.
+    narrowings: Narrowings,
 }
 
 /// State: with the parameters, it determines all later frames.
@@ -102,6 +104,7 @@ struct Derived {
 struct Buffers {
     avoidance: Vec<Option<Vector>>,
     allowed_speed: Vec<Option<f64>>,
+    heading: Vec<i8>,
     acceleration: Vec<Vector>,
     /// The positions before the move, in scenes with journeys.
     before: Vec<Vector>,
@@ -191,6 +194,7 @@ impl Simulation {
             needs: scene.needs(),
             social_forces: scene.social_forces(),
             walking_laws: scene.walking_laws(),
+            narrowings: scene.narrowings(),
             scene: Scene {
                 agents: Vec::new(),
                 ..scene
@@ -355,17 +359,6 @@ impl Simulation {
     /// The agents that wait for room, entrance by entrance.
     pub fn backlogs(&self) -> impl Iterator<Item = Backlog<'_>> {
         self.crowd.schedule.backlogs(&self.fixed.scene)
-    }
-
-    /// The decision that agent `i` would make now about the place of its stage; `None` if it does not walk to a place.
-    pub fn decision(&self, i: usize) -> Option<Decision> {
-        let trip = self.crowd.agents.trip.get(i)?.as_ref()?;
-        let chooser = Chooser {
-            scene: &self.fixed.scene,
-            crowd: &self.crowd,
-            agent: i,
-        };
-        (trip.status == Status::Walking).then(|| chooser.decide(trip, Some(trip.place)))
     }
 }
 

@@ -171,9 +171,16 @@ pub fn own_texts<'a>(
     texts.filter(move |label| !known.contains(&plain(&label.text)))
 }
 
-/// The name of a zone with its factor.
+/// The name of a zone with what it changes.
 pub fn zone_name(zone: &Zone) -> String {
-    format!("{}: speed × {}", zone.name, round::brief(zone.speed_factor))
+    let brief = round::brief;
+    let speed = format!("speed × {}", brief(zone.speed_factor));
+    let motivation = format!("motivation {}", brief(zone.motivation));
+    match (zone.speed_factor == 1.0, zone.motivation == 0.0) {
+        (_, true) => format!("{}: {speed}", zone.name),
+        (true, false) => format!("{}: {motivation}", zone.name),
+        (false, false) => format!("{}: {speed}, {motivation}", zone.name),
+    }
 }
 
 /// Parallel lines that fill a ring, this far apart, meters.

@@ -31,6 +31,7 @@ impl Display for Breakdown {
         )?;
         self.write_way(f)?;
         self.write_visit(f)?;
+        self.write_choice(f)?;
         self.write_accelerations(f)?;
         for wall in &self.walls {
             writeln!(
@@ -124,6 +125,33 @@ impl Breakdown {
         let again = again.map_or(String::new(), |t| format!("; looks again at {t:.2} s"));
         let (choice, reason) = (&why.choice, why.reason);
         writeln!(f, "    now it would choose `{choice}`: {reason}{again}")
+    }
+
+    fn write_choice(&self, f: &mut Formatter) -> fmt::Result {
+        let Some(choice) = &self.choice else {
+            return Ok(());
+        };
+        writeln!(
+            f,
+            "  headings: motivation {}, time gap × {:.3}",
+            choice.motivation, choice.gap_factor
+        )?;
+        for heading in &choice.headings {
+            let ends_at = match (heading.ends_at_agent, heading.ends_at_wall) {
+                (Some(agent), _) => format!(", up to agent {agent}"),
+                (_, Some(wall)) => format!(", up to wall {wall}"),
+                _ => String::new(),
+            };
+            writeln!(
+                f,
+                "   {} {:>4.0}°: room for {:.3} m/s, utility {:.3} m/s{ends_at}",
+                if heading.followed { '>' } else { ' ' },
+                heading.angle,
+                heading.room,
+                heading.utility,
+            )?;
+        }
+        Ok(())
     }
 
     fn write_accelerations(&self, f: &mut Formatter) -> fmt::Result {

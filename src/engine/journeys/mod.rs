@@ -6,6 +6,8 @@ mod trip;
 pub use place::{Exit, Kind, Place, Queue, WaitingArea};
 pub use trip::{Status, Trip};
 
+use std::ops::Range;
+
 use crate::engine::geometry::Ring;
 use crate::engine::math::Vector;
 
@@ -88,7 +90,7 @@ pub enum ChangeKind {
     Release,
 }
 
-/// An area in which agents walk slower or faster.
+/// An area in which agents walk slower or faster, or hurry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Zone {
     /// Name in reports.
@@ -97,14 +99,29 @@ pub struct Zone {
     pub area: Ring,
     /// The preferred speed is multiplied by this.
     pub speed_factor: f64,
+    /// The least motivation of agents there, from 0 to 1.
+    pub motivation: f64,
+    /// When it acts, seconds.
+    pub time: Range<f64>,
 }
 
 impl Journeys {
-    /// The factor on the preferred speed at `p`: the smallest of all zones there.
-    pub fn speed_factor(&self, p: Vector) -> f64 {
-        let here = self.zones.iter().filter(|zone| zone.area.contains(p));
-        let factors = here.map(|zone| zone.speed_factor);
+    /// The factor on the preferred speed at `p` at `time` seconds: the smallest of all zones there.
+    pub fn speed_factor(&self, p: Vector, time: f64) -> f64 {
+        let factors = self.zones_at(p, time).map(|zone| zone.speed_factor);
         factors.reduce(f64::min).unwrap_or(1.0)
+    }
+
+    /// The least motivation of agents at `p` at `time` seconds: the greatest of all zones there.
+    pub fn motivation(&self, p: Vector, time: f64) -> f64 {
+        self.zones_at(p, time)
+            .map(|zone| zone.motivation)
+            .fold(0.0, f64::max)
+    }
+
+    fn zones_at(&self, p: Vector, time: f64) -> impl Iterator<Item = &Zone> {
+        let zones = self.zones.iter();
+        zones.filter(move |zone| zone.time.contains(&time) && zone.area.contains(p))
     }
 
     /// Whether some agents choose the quickest place.

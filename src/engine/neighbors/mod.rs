@@ -46,6 +46,8 @@ pub struct Ranges {
     pub support: f64,
     /// Radius of the avoidance methods, meters.
     pub avoidance: Option<f64>,
+    /// Radius within which walking laws see walls, meters.
+    pub sight: Option<f64>,
     /// Radius of the sums over agents that do not read the lists of near agents, meters: social forces and walking
     /// laws.
     pub wide: Option<f64>,
@@ -112,7 +114,8 @@ impl Neighbors {
         list_walls(&mut self.near_walls, agents, walls, |radius| {
             least.max(radius) + margin
         });
-        match self.ranges.avoidance {
+        let far = self.ranges.avoidance.into_iter().chain(self.ranges.sight);
+        match far.reduce(f64::max) {
             Some(radius) => list_walls(&mut self.far_walls, agents, walls, |_| radius + margin),
             None => self.far_walls.clear(),
         }

@@ -54,7 +54,7 @@ pub enum BlendError {
     DifferentRvo,
     /// Two profiles have different walking laws that look ahead.
     #[error(
-        "profiles of one blend share one walking law: give those with `headway` or `density-ahead` the same parameters"
+        "profiles of one blend share one walking law: give those with `headway`, `density-ahead` or `headings` the same parameters"
     )]
     DifferentLaws,
     /// Two profiles have bodies of different sizes.
@@ -147,10 +147,10 @@ impl Blend {
         laws.find(WalkingLaw::looks_ahead)
     }
 
-    /// Whether a walking law lowers the preferred speed of RVO.
-    pub fn rvo_has_law(&self) -> bool {
+    /// The walking law that changes the preferred velocity of RVO.
+    pub fn law_of_rvo(&self) -> Option<WalkingLaw> {
         let mut with_rvo = (self.steps.iter()).filter(|step| rvo_of(&step.profile).is_some());
-        with_rvo.any(|step| step.profile.walking.is_some_and(|law| law.looks_ahead()))
+        with_rvo.find_map(|step| step.profile.walking.filter(WalkingLaw::looks_ahead))
     }
 
     /// The profiles that act on agent `i` of a frozen frame, with their weights, which sum to 1.

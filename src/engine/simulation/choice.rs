@@ -3,8 +3,8 @@
 use rand::Rng;
 use serde::Serialize;
 
-use super::{Crowd, PlaceState};
-use crate::engine::journeys::{Choice, Journey, JourneyStage, Kind, Place, Trip};
+use super::{Crowd, PlaceState, Simulation};
+use crate::engine::journeys::{Choice, Journey, JourneyStage, Kind, Place, Status, Trip};
 use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Scene;
@@ -27,6 +27,19 @@ const BEFORE: f64 = 2.0;
 const FEWEST_OBSERVED: usize = 5;
 /// The least flow that agents expect from observation, P/s.
 const LEAST_FLOW: f64 = 0.1;
+
+impl Simulation {
+    /// The decision that agent `i` would make now about the place of its stage; `None` if it does not walk to a place.
+    pub fn decision(&self, i: usize) -> Option<Decision> {
+        let trip = self.crowd.agents.trip.get(i)?.as_ref()?;
+        let chooser = Chooser {
+            scene: &self.fixed.scene,
+            crowd: &self.crowd,
+            agent: i,
+        };
+        (trip.status == Status::Walking).then(|| chooser.decide(trip, Some(trip.place)))
+    }
+}
 
 /// An agent that chooses.
 pub(super) struct Chooser<'a> {

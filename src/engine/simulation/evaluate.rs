@@ -10,7 +10,7 @@ use crate::engine::density;
 use crate::engine::forces::goal;
 use crate::engine::forces::near::{self, PairCoefficients};
 use crate::engine::forces::rvo::{Scratch, Wish};
-use crate::engine::forces::walking;
+use crate::engine::forces::walking::{Decided, Due, WalkingLaw, some_meet};
 use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, are_finite, clamp_length, direction};
 use crate::engine::neighbors::{BLOCK, ListPolicy, TASK};
@@ -177,28 +177,41 @@ impl Simulation {
         if !crowd.agents.allowed_speed.contains(&None) {
             return;
         }
-        let (derived, decided) = (&mut self.derived, &mut self.buffers.allowed_speed);
-        decided.clone_from(&crowd.agents.allowed_speed);
+        if fixed.needs.headings {
+            crowd.agents.heading.resize(count, 0);
+        }
+        let (derived, allowed) = (&mut self.derived, &mut self.buffers.allowed_speed);
+        let heading = &mut self.buffers.heading;
+        allowed.clone_from(&crowd.agents.allowed_speed);
+        heading.clone_from(&crowd.agents.heading);
+        heading.resize(count, 0);
         self.stages.time(Stage::WalkingLaws, || {
             let wishes = &derived.fields.preferred_velocity;
             derived.packed.take_headings(wishes);
+            let meets = fixed.needs.headings && some_meet(wishes);
             let frame = derived.frame(fixed, crowd);
-            let blocks = decided.par_chunks_mut(BLOCK).with_min_len(TASK).enumerate();
-            blocks.for_each(|(b, allowed)| {
+            let blocks = allowed
+                .par_chunks_mut(BLOCK)
+                .zip(heading.par_chunks_mut(BLOCK));
+            let blocks = blocks.with_min_len(TASK).enumerate();
+            blocks.for_each(|(b, (allowed, heading))| {
                 for law in &fixed.walking_laws {
-                    let mut is_due = [false; BLOCK];
-                    for (k, allowed) in allowed.iter().enumerate() {
-                        let own = fixed.blend(frame.agents, b * BLOCK + k).walking_law();
-                        is_due[k] = allowed.is_none() && own == Some(*law);
-                    }
-                    law.decide(&frame, b, &is_due, allowed);
+                    let due = Due {
+                        meets,
+                        ..fixed.due(&frame, b, law, allowed)
+                    };
+                    let (allowed, heading) = (&mut *allowed, &mut *heading);
+                    law.decide(&frame, b, &due, Decided { allowed, heading });
                 }
                 for allowed in allowed {
                     allowed.get_or_insert(f64::INFINITY); // no law
                 }
             });
         });
-        std::mem::swap(&mut self.crowd.agents.allowed_speed, decided);
+        std::mem::swap(&mut self.crowd.agents.allowed_speed, allowed);
+        if self.fixed.needs.headings {
+            std::mem::swap(&mut self.crowd.agents.heading, heading);
+        }
     }
 
     /// Step 3, RVO: chooses new accelerations in coarse frames, and in any frame for agents that hold none.
@@ -262,14 +275,34 @@ impl Fixed {
         }
     }
 
+    /// The agents of block `b` with this walking law that have no allowed speed yet.
+    fn due(&self, frame: &Frame, b: usize, law: &WalkingLaw, allowed: &[Option<f64>]) -> Due {
+        let (mut is_due, mut gap) = ([false; BLOCK], [1.0; BLOCK]);
+        for (k, allowed) in allowed.iter().enumerate() {
+            let i = b * BLOCK + k;
+            let own = self.blend(frame.agents, i).walking_law();
+            is_due[k] = allowed.is_none() && own == Some(*law);
+            if is_due[k]
+                && let Some(law) = law.headings()
+            {
+                gap[k] = self.gap(frame, i, law);
+            }
+        }
+        Due {
+            is_due,
+            gap,
+            meets: true,
+        }
+    }
+
     /// The input of RVO for agent `i`.
     fn wish(&self, frame: &Frame, i: usize) -> Wish {
         let free = frame.fields.preferred_velocity[i];
-        let has_law = self.blend(frame.agents, i).rvo_has_law();
+        let law = self.blend(frame.agents, i).law_of_rvo();
         Wish {
-            preferred_velocity: match has_law {
-                true => free + walking::lost_velocity(frame, i),
-                false => free,
+            preferred_velocity: match law {
+                Some(law) => free + law.lost_velocity(frame, i),
+                None => free,
             },
             max_speed: self.scene.max_speed(frame.agents, i),
         }

@@ -133,9 +133,9 @@ impl Simulation {
             return;
         }
         if !scene.journeys.zones.is_empty() {
-            let agents = &mut crowd.agents;
+            let (agents, time) = (&mut crowd.agents, crowd.clock.time());
             let positions = agents.position.par_iter().with_min_len(TASK * BLOCK);
-            let factors = positions.map(|&p| Some(scene.journeys.speed_factor(p)));
+            let factors = positions.map(|&p| Some(scene.journeys.speed_factor(p, time)));
             factors.collect_into_vec(&mut agents.zone);
         }
         if !scene.journeys.journeys.is_empty() {

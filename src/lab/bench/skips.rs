@@ -137,6 +137,7 @@ pub fn everything() -> Needs {
         rvo: true,
         social: true,
         walking: true,
+        headings: true,
         avoidance: Some(AVOIDANCE),
         removal: true,
         paces: true,

@@ -86,8 +86,13 @@ impl fmt::Display for Law {
         let value = |value: Option<f64>| value.map_or("default".to_owned(), |x| x.to_string());
         match kind {
             WalkingLawKind::None => write!(f, "none"),
-            WalkingLawKind::Headway => {
-                write!(f, "headway T={}", value(self.headway_time))?;
+            WalkingLawKind::Headway | WalkingLawKind::Headings => {
+                let name = if kind == WalkingLawKind::Headway {
+                    "headway"
+                } else {
+                    "headings"
+                };
+                write!(f, "{name} T={}", value(self.headway_time))?;
                 let anticipation = self.headway_anticipation;
                 anticipation.map_or(Ok(()), |time| write!(f, " t={time}"))
             }

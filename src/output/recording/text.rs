@@ -149,7 +149,8 @@ fn on_debug_agents(debug: &DebugAgents) -> String {
     let mut text = format!(
         "* Agents laid open (`world/debug`): circle = kernel of radius h; tinted outline = hidden \
          region P_k behind a wall; dots at walls = nearest point r*, between = representative point \
-         r°; yellow line = way.\n\
+         r°; yellow line = way; green lines (followed agents with the walking law `headings`) = headings, as long as \
+         the agent can walk there in 1 s, the followed one bright.\n\
          * Followed agents (`focus`): {followed}. The agent is bright and stays in the middle; its neighbors are \
          dark. Beside it: the magnitudes of its accelerations over time.\n\
          * Arrows: the weighted acceleration a of each force; white = their sum. Length: {}.\n",

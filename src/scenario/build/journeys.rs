@@ -69,6 +69,8 @@ pub fn journeys(
             area: ring(&given.area).under(&format!("{name}.area"))?,
             name: given.name.clone().unwrap_or(name),
             speed_factor: given.speed_factor,
+            motivation: given.motivation,
+            time: given.from_secs..given.until_secs.unwrap_or(f64::INFINITY),
         });
     }
     found.add_changes(keys)?;

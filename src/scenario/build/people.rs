@@ -129,6 +129,7 @@ impl<'a> Population<'a> {
             direction: target.direction,
             profile: agent.profile.as_ref(),
             remove_within: agent.remove_within,
+            motivation: agent.motivation,
             counted: agent.counted,
         })?;
         self.scene.agents.push(NewAgent {
@@ -238,6 +239,7 @@ impl<'a> Population<'a> {
             direction: target.direction,
             profile: given.profile.as_ref(),
             remove_within: given.remove_within,
+            motivation: given.motivation,
             counted: given.counted,
         };
         Ok((self.group(name, behavior, traits)?, target))
@@ -297,6 +299,7 @@ impl<'a> Population<'a> {
             counted: behavior.counted.unwrap_or(true),
             journey: behavior.journey,
             direction: behavior.direction,
+            motivation: behavior.motivation.unwrap_or(self.file.motivation),
             traits,
         }))
     }
@@ -309,5 +312,6 @@ struct Behavior<'a> {
     direction: Option<Vector>,
     profile: Option<&'a ProfileChoice>,
     remove_within: Option<f64>,
+    motivation: Option<f64>,
     counted: Option<bool>,
 }

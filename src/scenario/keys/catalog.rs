@@ -37,6 +37,7 @@ impl Parameters {
             WalkingLawKind::None => None,
             WalkingLawKind::Headway => Some(WalkingLaw::Headway(self.headway())),
             WalkingLawKind::DensityAhead => Some(WalkingLaw::DensityAhead(self.density_ahead())),
+            WalkingLawKind::Headings => Some(WalkingLaw::Headings(self.headings())),
             WalkingLawKind::Drag => Some(WalkingLaw::Drag(self.drag())),
         }
     }

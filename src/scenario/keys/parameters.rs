@@ -10,7 +10,8 @@ use crate::engine::forces::goal::GoalForce;
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::forces::viscosity::Viscosity;
-use crate::engine::forces::walking::{DensityAhead, Drag, Headway};
+use crate::engine::forces::walking::headings::Gap;
+use crate::engine::forces::walking::{DensityAhead, Drag, Headings, Headway};
 use crate::scenario::keys::limits::{HIGHEST_DENSITY, STRONGEST};
 
 /// The longest range, meters.
@@ -40,6 +41,8 @@ pub enum WalkingLawKind {
     DensityAhead,
     /// Friction by density.
     Drag,
+    /// A choice of headings by the room along them, with a time gap.
+    Headings,
 }
 
 /// Parameters of a profile; `None` means the paper's value (§5.5). Where a text says that the paper's time step is too
@@ -77,8 +80,8 @@ pub struct Parameters {
     #[schemars(range(min = 0, max = STRONGEST))]
     pub avoidance_tolerance: Option<f64>,
     /// What slows agents in a crowd, beside the paper's forces: `headway`, a time gap to the nearest agent ahead;
-    /// `density-ahead`, Weidmann's speed at the density ahead; `drag`, a friction. A law replaces social forces;
-    /// with both, agents brake twice.
+    /// `headings`, also a choice of directions by the room along them; `density-ahead`, Weidmann's speed at the density
+    /// ahead; `drag`, a friction. A law replaces social forces; with both, agents brake twice.
     #[schemars(extend("default" = "none"))]
     pub walking_law: Option<WalkingLawKind>,
     /// [`Headway::headway_time`].
@@ -93,6 +96,36 @@ pub struct Parameters {
     /// [`Headway::lane_half_width`].
     #[schemars(range(min = 0.01, max = FARTHEST))]
     pub lane_half_width: Option<f64>,
+    /// [`Headings::heading_angle`].
+    #[schemars(range(min = 0, max = 90))]
+    pub heading_angle: Option<f64>,
+    /// [`Headings::heading_half_width`].
+    #[schemars(range(min = 0.01, max = FARTHEST))]
+    pub heading_half_width: Option<f64>,
+    /// [`Headings::look_ahead`].
+    #[schemars(range(min = 0, max = FARTHEST))]
+    pub look_ahead: Option<f64>,
+    /// [`Headings::heading_persistence`].
+    #[schemars(range(min = 0, max = 10))]
+    pub heading_persistence: Option<f64>,
+    /// [`Headings::evasion_time`].
+    #[schemars(range(min = 0, max = 10))]
+    pub evasion_time: Option<f64>,
+    /// [`Gap::hurry_share`].
+    #[schemars(range(min = 0, max = 0.95))]
+    pub hurry_share: Option<f64>,
+    /// [`Gap::press_share`].
+    #[schemars(range(min = 0, max = 0.95))]
+    pub press_share: Option<f64>,
+    /// [`Gap::press_density`].
+    #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
+    pub press_density: Option<f64>,
+    /// [`Gap::narrowing_share`].
+    #[schemars(range(min = -0.9, max = 10))]
+    pub narrowing_share: Option<f64>,
+    /// [`Gap::narrowing_range`].
+    #[schemars(range(min = 0.01, max = FARTHEST))]
+    pub narrowing_range: Option<f64>,
     /// [`DensityAhead::jam_density`].
     #[schemars(range(min = 0.01, max = HIGHEST_DENSITY))]
     pub jam_density: Option<f64>,
@@ -152,6 +185,8 @@ fn describe(schema: &mut Schema) {
         GoalForce::json_schema,
         SocialForce::json_schema,
         Headway::json_schema,
+        Headings::json_schema,
+        Gap::json_schema,
         DensityAhead::json_schema,
         Drag::json_schema,
         Rvo::json_schema,
@@ -212,6 +247,16 @@ impl Parameters {
             headway_anticipation: finite(self.headway_anticipation)
                 .or(fallback.headway_anticipation),
             lane_half_width: finite(self.lane_half_width).or(fallback.lane_half_width),
+            heading_angle: finite(self.heading_angle).or(fallback.heading_angle),
+            heading_half_width: finite(self.heading_half_width).or(fallback.heading_half_width),
+            look_ahead: finite(self.look_ahead).or(fallback.look_ahead),
+            heading_persistence: finite(self.heading_persistence).or(fallback.heading_persistence),
+            evasion_time: finite(self.evasion_time).or(fallback.evasion_time),
+            hurry_share: finite(self.hurry_share).or(fallback.hurry_share),
+            press_share: finite(self.press_share).or(fallback.press_share),
+            press_density: finite(self.press_density).or(fallback.press_density),
+            narrowing_share: finite(self.narrowing_share).or(fallback.narrowing_share),
+            narrowing_range: finite(self.narrowing_range).or(fallback.narrowing_range),
             jam_density: finite(self.jam_density).or(fallback.jam_density),
             slowing_density: finite(self.slowing_density).or(fallback.slowing_density),
             drag_per_density: finite(self.drag_per_density).or(fallback.drag_per_density),
@@ -286,6 +331,33 @@ impl Parameters {
             lane_half_width: finite(self.lane_half_width).unwrap_or(paper.lane_half_width),
             headway_anticipation: finite(self.headway_anticipation)
                 .unwrap_or(paper.headway_anticipation),
+        }
+    }
+
+    /// The choice of headings.
+    pub fn headings(&self) -> Headings {
+        let paper = Headings::default();
+        Headings {
+            headway: self.headway(),
+            gap: self.gap(),
+            heading_angle: finite(self.heading_angle).unwrap_or(paper.heading_angle),
+            heading_half_width: finite(self.heading_half_width).unwrap_or(paper.heading_half_width),
+            look_ahead: finite(self.look_ahead).unwrap_or(paper.look_ahead),
+            heading_persistence: finite(self.heading_persistence)
+                .unwrap_or(paper.heading_persistence),
+            evasion_time: finite(self.evasion_time).unwrap_or(paper.evasion_time),
+        }
+    }
+
+    /// How the time gap depends on motivation, density and narrowings.
+    fn gap(&self) -> Gap {
+        let paper = Gap::default();
+        Gap {
+            hurry_share: finite(self.hurry_share).unwrap_or(paper.hurry_share),
+            press_share: finite(self.press_share).unwrap_or(paper.press_share),
+            press_density: finite(self.press_density).unwrap_or(paper.press_density),
+            narrowing_share: finite(self.narrowing_share).unwrap_or(paper.narrowing_share),
+            narrowing_range: finite(self.narrowing_range).unwrap_or(paper.narrowing_range),
         }
     }
 

@@ -144,7 +144,7 @@ pub struct Choice {
     pub shares: Option<BTreeMap<String, f64>>,
 }
 
-/// An area in which people walk slower or faster, such as stairs.
+/// An area in which people walk slower or faster, such as stairs, or hurry.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Zone {
@@ -154,8 +154,25 @@ pub struct Zone {
     /// Where.
     pub area: Ring,
     /// The preferred speed is multiplied by this. Where zones overlap, the least factor holds.
+    #[serde(default = "unchanged")]
     #[schemars(range(min = 0.01, max = 10))]
     pub speed_factor: f64,
+    /// The least motivation of people here, from 0 to 1. Where zones overlap, the greatest holds.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 1))]
+    pub motivation: f64,
+    /// When the zone begins to act, seconds.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    pub from_secs: f64,
+    /// When it ceases to act, seconds. Default: never.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    pub until_secs: Option<f64>,
+}
+
+/// The factor of zones that leave the preferred speed as it is.
+fn unchanged() -> f64 {
+    1.0
 }
 
 /// The number of a journey.

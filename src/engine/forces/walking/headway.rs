@@ -16,7 +16,7 @@ use std::ops::Range;
 
 use schemars::JsonSchema;
 
-use super::{View, Walkers};
+use super::{FADE, View, Walkers};
 use crate::engine::forces::rates::Rates;
 use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
@@ -48,9 +48,6 @@ impl Default for Headway {
         }
     }
 }
-
-/// Width of the fading edge of a lane and length of its fading beginning, in units of w.
-const FADE: f64 = 0.5;
 
 /// Agents count less the more they want to walk against agent i, and not at all where ê_i·ê_j is −1 over this number.
 pub(super) const AGAINST: f64 = 4.0;
@@ -94,6 +91,7 @@ impl Headway {
             length: self.headway_length,
             time: self.headway_time,
             aside: (1.0 + FADE) * self.lane_half_width,
+            spread: 0.0,
         }
     }
 
@@ -116,9 +114,9 @@ impl Headway {
         runs: &[Run],
     ) -> Lanes<R, S> {
         let (zero, unit) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, bodies.unit));
-        let per_time = splat::<R, S>(simd, 1.0 / self.headway_time);
+        let per_time = splat::<R, S>(simd, 1.0 / self.headway_time) / walkers.gap;
         let length = splat::<R, S>(simd, self.headway_length);
-        let time = splat::<R, S>(simd, self.headway_time);
+        let time = splat::<R, S>(simd, self.headway_time) * walkers.gap;
         let range = walkers.speed.mul_add(time, length) / unit;
         let range_squared = range * range;
         let fade = FADE * self.lane_half_width;

@@ -10,18 +10,27 @@
 //! so that both together are the goal force with the lowered speed. RVO has no goal force; the lowered speed is in
 //! its cost (Eq. 20). Agents decide on s_i^law in coarse frames, like RVO on its velocities, and hold it in between:
 //! people take longer to react. [`Drag`] is a friction. Agents without preferred velocity do not look ahead.
+//!
+//! With [`Headings`], agents also choose a heading ĥ_i beside ê_i, and the acceleration is K^goal/(τ m_i) (s_i^law ĥ_i −
+//! s_i ê_i). They hold the angle between both until the next coarse frame.
 
 mod density_ahead;
 mod drag;
+pub mod headings;
 mod headway;
 
 pub use density_ahead::DensityAhead;
 pub use drag::Drag;
+pub use headings::Headings;
 pub use headway::Headway;
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use headings::{COUNT, STRAIGHT};
 
 use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, direction};
 use crate::engine::neighbors::BLOCK;
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{
@@ -37,7 +46,12 @@ pub enum WalkingLaw {
     DensityAhead(DensityAhead),
     /// A friction that grows with the density.
     Drag(Drag),
+    /// Agents choose a heading by the room that it has, and keep a time gap along it.
+    Headings(Headings),
 }
+
+/// Width of the fading edge of a lane and length of its fading beginning, in units of its half-width.
+const FADE: f64 = 0.5;
 
 /// The rectangle ahead of an agent in which it looks for others.
 #[derive(Debug, Clone, Copy, Default)]
@@ -48,6 +62,27 @@ struct View {
     time: f64,
     /// Its width to each side, meters.
     aside: f64,
+    /// The additional width to each side per length.
+    spread: f64,
+}
+
+/// The agents of a block that decide now.
+pub struct Due {
+    /// Whether each of them does.
+    pub is_due: [bool; BLOCK],
+    /// The factors of their time gaps ([`headings::Gap`]); 1 with other laws.
+    pub gap: [f64; BLOCK],
+    /// Whether some agents may want to walk against others.
+    pub meets: bool,
+}
+
+/// What the agents of a block decide.
+pub struct Decided<'a> {
+    /// The speeds at which they may walk, m/s; infinite without agents in view.
+    pub allowed: &'a mut [Option<f64>],
+    /// The headings that they follow, as [`Agents::heading`](crate::engine::agents::Agents::heading); empty if no agent
+    /// chooses one.
+    pub heading: &'a mut [i8],
 }
 
 /// Eight agents that look ahead.
@@ -58,13 +93,15 @@ struct Walkers<R: Real, S: Simd> {
     backwards: [Lanes<R, S>; 2],
     /// s_i: their preferred speeds, m/s.
     speed: Lanes<R, S>,
+    /// The factors of their time gaps.
+    gap: Lanes<R, S>,
 }
 
 impl WalkingLaw {
     /// Whether the law lowers preferred speeds by the agents ahead.
     pub fn looks_ahead(&self) -> bool {
         match self {
-            Self::Headway(_) | Self::DensityAhead(_) => true,
+            Self::Headway(_) | Self::DensityAhead(_) | Self::Headings(_) => true,
             Self::Drag(_) => false,
         }
     }
@@ -73,7 +110,23 @@ impl WalkingLaw {
     /// the largest support radius.
     pub fn reach(&self, speed: f64, support: f64) -> f64 {
         let view = self.view(support);
-        (view.length + view.time * speed).hypot(view.aside)
+        let length = view.length + view.time * speed;
+        length.hypot(view.aside + view.spread * length)
+    }
+
+    /// The farthest distance of walls that an agent with this preferred speed, m/s, avoids, meters; `None` for laws that
+    /// do not see walls.
+    pub fn sees_walls(&self, speed: f64) -> Option<f64> {
+        self.headings()
+            .map(|law| law.sight(speed, law.gap.longest()))
+    }
+
+    /// The law of headings, if it is this one.
+    pub fn headings(&self) -> Option<&Headings> {
+        match self {
+            Self::Headings(law) => Some(law),
+            Self::Headway(_) | Self::DensityAhead(_) | Self::Drag(_) => None,
+        }
     }
 
     fn view(&self, support: f64) -> View {
@@ -81,10 +134,11 @@ impl WalkingLaw {
             Self::Headway(law) => law.view(),
             Self::DensityAhead(_) => View {
                 length: support,
-                time: 0.0,
                 aside: support,
+                ..View::default()
             },
             Self::Drag(_) => View::default(),
+            Self::Headings(law) => law.view(),
         }
     }
 
@@ -95,6 +149,7 @@ impl WalkingLaw {
             Self::Headway(law) => law.rates(),
             Self::DensityAhead(law) => law.rates(of),
             Self::Drag(law) => law.rates(of),
+            Self::Headings(law) => law.rates(),
         }
     }
 
@@ -103,19 +158,14 @@ impl WalkingLaw {
         match self {
             Self::Headway(_) | Self::DensityAhead(_) => false,
             Self::Drag(_) => true,
+            Self::Headings(law) => law.gap.press_share != 0.0,
         }
     }
 
-    /// Sets the speeds at which the due agents of block `b` may walk, m/s; infinite without agents in view.
-    pub fn decide(
-        &self,
-        frame: &Frame,
-        b: usize,
-        is_due: &[bool; BLOCK],
-        allowed: &mut [Option<f64>],
-    ) {
+    /// Sets what the due agents of block `b` decide.
+    pub fn decide(&self, frame: &Frame, b: usize, due: &Due, mut decided: Decided) {
         each!(frame.packed, columns => dispatch!(Level::new(), simd => {
-            self.decide_with(simd, &columns.bodies, (frame, b), is_due, allowed);
+            self.decide_with(simd, &columns.bodies, (frame, b), due, &mut decided);
         }));
     }
 
@@ -125,19 +175,23 @@ impl WalkingLaw {
         simd: S,
         bodies: &Bodies<R>,
         (frame, b): (&Frame, usize),
-        is_due: &[bool; BLOCK],
-        allowed: &mut [Option<f64>],
+        due: &Due,
+        decided: &mut Decided,
     ) {
         let mut runs = Vec::new();
-        let view = self.view(frame.neighbors.support());
+        let view = match self {
+            Self::Headings(law) if !due.meets => law.view_of_one_way(),
+            _ => self.view(frame.neighbors.support()),
+        };
         let positions = &frame.agents.position;
+        let all = (self.headings()).map_or([Vector::zeros(); COUNT], Headings::all_turned);
         for (agents, _) in frame.neighbors.near().block(b).clusters() {
             let own = agents.start % BLOCK..agents.start % BLOCK + agents.len();
-            if !is_due[own.clone()].contains(&true) {
+            if !due.is_due[own.clone()].contains(&true) {
                 continue;
             }
             let wishes = &frame.fields.preferred_velocity[agents.clone()];
-            let walkers = Walkers::<R, S>::new(simd, agents.start, wishes);
+            let walkers = Walkers::<R, S>::new(simd, agents.start, wishes, &due.gap[own.clone()]);
             let way = walkers.area(simd, bodies, &view);
             let area = way.map(|way| positions[agents.start] + way);
             frame.neighbors.inside(area, positions, &mut runs);
@@ -145,30 +199,66 @@ impl WalkingLaw {
                 Self::Headway(law) => law.lost_speeds(simd, bodies, &walkers, &runs),
                 Self::DensityAhead(law) => law.lost_speeds(simd, bodies, &walkers, &runs),
                 Self::Drag(_) => continue,
+                Self::Headings(law) => {
+                    let rooms = law.rooms(simd, bodies, (&walkers, &all), &runs);
+                    let rooms = rooms.map(
+                        #[inline(always)]
+                        |room| store::<R, S>(room),
+                    );
+                    let mut turned = [Vector::new(1.0, 0.0); LANES];
+                    for (k, i) in agents.clone().enumerate() {
+                        let (rooms, place) = (rooms.map(|room| room[k]), own.start + k);
+                        if due.is_due[place] {
+                            let chosen = law.chosen(frame, i, (due.gap[place], &all), rooms);
+                            turned[k] = all[chosen];
+                            decided.heading[place] = (chosen as i32 - STRAIGHT as i32) as i8;
+                        }
+                    }
+                    let walkers = walkers.turned(simd, &turned);
+                    let way = walkers.area(simd, bodies, &law.lane());
+                    let area = way.map(|way| positions[agents.start] + way);
+                    frame.neighbors.inside(area, positions, &mut runs);
+                    law.headway.lost_speeds(simd, bodies, &walkers, &runs)
+                }
             };
             let lost = store::<R, S>(lost);
-            for (k, i) in own.enumerate().filter(|&(_, i)| is_due[i]) {
+            for (k, i) in own.enumerate().filter(|&(_, i)| due.is_due[i]) {
                 let is_free = lost[k] <= 0.0;
                 let lowered = || (wishes[k].norm() - lost[k]).max(0.0);
-                allowed[i] = Some(if is_free { f64::INFINITY } else { lowered() });
+                decided.allowed[i] = Some(if is_free { f64::INFINITY } else { lowered() });
             }
+        }
+    }
+
+    /// The change of the preferred velocity of agent `i` that gives it the allowed speed along the heading that it
+    /// follows, m/s.
+    pub fn lost_velocity(&self, frame: &Frame, i: usize) -> Vector {
+        let wish = frame.fields.preferred_velocity[i];
+        let speed = wish.norm();
+        let allowed = frame.agents.allowed_speed.get(i).copied().flatten();
+        let allowed = allowed.filter(|&allowed| allowed < speed);
+        let law = self.headings();
+        match law.map(|law| (law, law.followed(frame, i))) {
+            Some((law, followed)) if followed != STRAIGHT => {
+                let share = allowed.map_or(1.0, |allowed| allowed / speed);
+                headings::rotated(wish, law.turned(followed)) * share - wish
+            }
+            _ => allowed.map_or(Vector::zeros(), |allowed| wish * (allowed / speed - 1.0)),
         }
     }
 }
 
-/// The change of the preferred velocity of agent `i` that limits it to the allowed speed, m/s.
-pub fn lost_velocity(frame: &Frame, i: usize) -> Vector {
-    let wish = frame.fields.preferred_velocity[i];
-    let speed = wish.norm();
-    match frame.agents.allowed_speed.get(i) {
-        Some(&Some(allowed)) if allowed < speed => wish * (allowed / speed - 1.0),
-        _ => Vector::zeros(),
-    }
+/// Whether some agents with these preferred velocities may want to walk against others: the directions of all are not
+/// within an eighth of a turn from their mean.
+pub fn some_meet(wishes: &[Vector]) -> bool {
+    let mean = direction(wishes.iter().map(|&wish| direction(wish)).sum());
+    let strays = |wish: &Vector| wish.dot(&mean) < FRAC_1_SQRT_2 * wish.norm();
+    wishes.iter().any(strays)
 }
 
 impl<R: Real, S: Simd> Walkers<R, S> {
     #[inline(always)]
-    fn new(simd: S, start: usize, wishes: &[Vector]) -> Self {
+    fn new(simd: S, start: usize, wishes: &[Vector], gaps: &[f64]) -> Self {
         let mut wish = [[0.0; LANES]; 2];
         for (k, of) in wishes.iter().enumerate() {
             wish[0][k] = of.x;
@@ -184,6 +274,19 @@ impl<R: Real, S: Simd> Walkers<R, S> {
             start,
             backwards: [x * minus_inverse, y * minus_inverse],
             speed,
+            gap: lanes_from::<R, S>(simd, gaps),
+        }
+    }
+
+    /// They look along other headings: turned by the angles of these unit vectors.
+    #[inline(always)]
+    fn turned(self, simd: S, by: &[Vector; LANES]) -> Self {
+        let cosine = lanes_from::<R, S>(simd, &by.map(|by| by.x));
+        let sine = lanes_from::<R, S>(simd, &by.map(|by| by.y));
+        let [x, y] = self.backwards;
+        Self {
+            backwards: [x * cosine - y * sine, y * cosine + x * sine],
+            ..self
         }
     }
 
@@ -213,8 +316,13 @@ impl<R: Real, S: Simd> Walkers<R, S> {
             splat::<R, S>(simd, -view.time),
             splat::<R, S>(simd, -view.length),
         );
-        let front = backwards * self.speed.mul_add(time, length);
-        let side = across.abs() * splat::<R, S>(simd, view.aside);
+        let reach = self.speed.mul_add(time, length);
+        let front = backwards * reach;
+        let (aside, spread) = (
+            splat::<R, S>(simd, view.aside),
+            splat::<R, S>(simd, -view.spread),
+        );
+        let side = across.abs() * reach.mul_add(spread, aside);
         let walks = self.speed.simd_gt(zero);
         let low = walks.select(at + front.min(zero) - side, zero);
         let high = walks.select(at + front.max(zero) + side, zero);

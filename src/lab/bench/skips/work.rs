@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Undone;
 use crate::engine::forces::rvo::{Scratch, Wish};
-use crate::engine::forces::walking::{Headway, WalkingLaw};
+use crate::engine::forces::walking::{Decided, Due, Headway, WalkingLaw};
 use crate::engine::geometry::{Area, Ring};
 use crate::engine::math::{Vector, bounds};
 use crate::engine::neighbors::{BLOCK, Lists, Neighbors, TASK};
@@ -191,8 +191,14 @@ pub fn walking_law(simulation: &Simulation) -> Result<Work, &'static str> {
         frame.packed = &packed;
         allowed.resize(frame.agents.len(), None);
         let blocks = allowed.par_chunks_mut(BLOCK).with_min_len(TASK);
+        let due = Due {
+            is_due: [true; BLOCK],
+            gap: [1.0; BLOCK],
+            meets: false,
+        };
         let decide = |(b, allowed): (usize, &mut [Option<f64>])| {
-            law.decide(&frame, b, &[true; BLOCK], allowed)
+            let heading = &mut [];
+            law.decide(&frame, b, &due, Decided { allowed, heading });
         };
         seconds(|| blocks.enumerate().for_each(decide))
     }))

@@ -7,7 +7,7 @@
 //! | `focus/ID/here` | turns y up |
 //! | `focus/ID/here/agent` | the agent, and the circle of its kernel |
 //! | `focus/ID/here/forces` | arrows with names, and the magnitudes of the forces as time series |
-//! | `focus/ID/here/walls` | hidden regions, lines to walls, nearest and representative points, the way |
+//! | `focus/ID/here/walls` | hidden regions, lines to walls, nearest and representative points, the way, the headings |
 //! | `focus/ID/here/scale` | arrows of 0.2, 2 and 20 m/s² |
 
 use rerun::{
@@ -30,6 +30,11 @@ pub const REACH: f64 = 2.5;
 /// The color of the followed agent: no force and no other agent has it.
 const AGENT: Rgb = [255, 244, 214];
 const KERNEL: Rgb = [150, 160, 220];
+/// The colors of the heading that the agent follows, and of the others.
+const FOLLOWED: Rgb = [190, 255, 150];
+const HEADING: Rgb = [90, 150, 110];
+/// Headings are as long as agents walk in this time at the speed for which there is room, seconds.
+const HEADING_SECS: f64 = 1.0;
 const SCALE: Rgb = [150, 154, 168];
 
 /// The part of the plane that the view of an agent shows, in the agent's frame.
@@ -172,6 +177,12 @@ impl Focus {
                 (std::iter::once([0.0, 0.0]).chain(corners).collect(), WAY)
             });
             lines.extend(way);
+            let choice = agent.breakdown.choice.iter();
+            lines.extend(choice.flat_map(|choice| &choice.headings).map(|heading| {
+                let end = xy(Vector::from(heading.direction) * (heading.room * HEADING_SECS));
+                let color = if heading.followed { FOLLOWED } else { HEADING };
+                (vec![[0.0, 0.0], end], color)
+            }));
         }
         let has_walls = !lines.is_empty();
         if has_walls || self.has_walls {

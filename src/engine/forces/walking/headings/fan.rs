@@ -1,0 +1,290 @@
+//! The headings of one agent, and of eight at a time.
+
+use std::ops::Range;
+
+use super::room::{before_wall, nearest_wall};
+use super::{COUNT, Headings, STRAIGHT, Seen};
+use crate::engine::forces::walking::{FADE, Walkers, headway};
+use crate::engine::frame::Frame;
+use crate::engine::math::{Vector, direction, perpendicular};
+use crate::engine::neighbors::Run;
+use crate::engine::pairs::prelude::*;
+use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
+
+/// The headings between which an agent chooses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fan {
+    /// From the right of the way to its left.
+    pub headings: [Heading; COUNT],
+    /// The number of the one that the agent follows.
+    pub followed: usize,
+    /// The factor of T.
+    pub gap: f64,
+}
+
+/// A heading.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Heading {
+    /// Its direction, of length 1.
+    pub direction: Vector,
+    /// Its angle from the way, radians.
+    pub angle: f64,
+    /// The speed for which it has room, S_k, m/s.
+    pub room: f64,
+    /// U_k, m/s.
+    pub utility: f64,
+    /// What ends the room.
+    pub ends_at: Option<End>,
+}
+
+/// What ends the room along a heading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// The agent with this index.
+    Agent(usize),
+    /// The wall with this index.
+    Wall(u32),
+}
+
+impl Headings {
+    /// The headings of agent `i` of a frozen frame, for a factor `gap` of T; `None` without a preferred velocity.
+    pub fn fan(&self, frame: &Frame, i: usize, gap: f64) -> Option<Fan> {
+        let wish = frame.fields.preferred_velocity[i];
+        let (speed, way) = (wish.norm(), direction(wish));
+        if speed == 0.0 {
+            return None;
+        }
+        let followed = self.followed(frame, i);
+        let far = self.sight(speed, gap);
+        let all = self.all_turned();
+        let headings = std::array::from_fn(|k| {
+            let turned = rotated(way, all[k]);
+            let radius = frame.agents.radius[i];
+            let (wall_room, wall) = nearest_wall(frame, i, radius, turned, far);
+            let mut least = (far, None);
+            for (j, r_ij) in around(frame, i, far + 2.0 * self.evasion_time * speed) {
+                let relative = frame.agents.velocity[j] - frame.agents.velocity[i];
+                let seen = Seen {
+                    along: -r_ij.dot(&turned),
+                    across: r_ij.perp(&turned),
+                    away: relative.dot(&turned),
+                    alike: direction(frame.fields.preferred_velocity[j]).dot(&way),
+                };
+                let distance = self.distance((far, speed), &seen);
+                if distance < least.0 {
+                    least = (distance, Some(End::Agent(j)));
+                }
+            }
+            let time = self.headway.headway_time * gap;
+            let room = ((least.0 - self.headway.headway_length) / time).max(0.0);
+            let (room, ends_at) = match wall_room / time < room {
+                true => (wall_room / time, wall.map(End::Wall)),
+                false => (room, least.1),
+            };
+            Heading {
+                direction: turned,
+                angle: self.angle(k),
+                room,
+                utility: self.utility(room, &all, [k, followed]),
+                ends_at,
+            }
+        });
+        Some(Fan {
+            headings,
+            followed,
+            gap,
+        })
+    }
+
+    /// The heading that agent `i` follows.
+    pub fn followed(&self, frame: &Frame, i: usize) -> usize {
+        let held = frame.agents.heading.get(i);
+        held.map_or(STRAIGHT, |&held| {
+            (STRAIGHT as i32 + i32::from(held)) as usize
+        })
+    }
+
+    /// Lowers the rooms along the headings of agent `i`, m/s, to those before walls.
+    pub(super) fn limit_by_walls(
+        &self,
+        frame: &Frame,
+        i: usize,
+        (gap, turned): (f64, &[Vector; COUNT]),
+        rooms: &mut [f64; COUNT],
+    ) {
+        let near = frame.neighbors.far_walls(i);
+        if near.is_empty() {
+            return;
+        }
+        let wish = frame.fields.preferred_velocity[i];
+        let (p, radius) = (frame.agents.position[i], frame.agents.radius[i]);
+        let far = self.sight(wish.norm(), gap);
+        let per_time = 1.0 / (self.headway.headway_time * gap);
+        let way = direction(wish);
+        let headings = turned.map(|by| rotated(way, by));
+        for &k in near {
+            let wall = frame.walls.wall(k);
+            if wall.is_beyond(p, far + radius) || !wall.faces(p) {
+                continue;
+            }
+            for (room, &heading) in rooms.iter_mut().zip(&headings) {
+                *room = room.min(before_wall(wall, p, radius, heading) * per_time);
+            }
+        }
+    }
+
+    /// S_k, m/s, before agents, for eight agents i. `runs` contain all agents in view, and some out of view.
+    #[inline(always)]
+    pub(in crate::engine::forces::walking) fn rooms<R: Real, S: Simd>(
+        &self,
+        simd: S,
+        bodies: &Bodies<R>,
+        (walkers, turned): (&Walkers<R, S>, &[Vector; COUNT]),
+        runs: &[Run],
+    ) -> [Lanes<R, S>; COUNT] {
+        let zero = splat::<R, S>(simd, 0.0);
+        let time = splat::<R, S>(simd, self.headway.headway_time) * walkers.gap;
+        let length = splat::<R, S>(simd, self.headway.headway_length);
+        let look_ahead = splat::<R, S>(simd, self.look_ahead);
+        let far = walkers.speed.mul_add(time, length) + look_ahead;
+        let [x, y] = walkers.backwards;
+        let velocity_x = load(simd, &bodies.velocity_x, walkers.start);
+        let velocity_y = load(simd, &bodies.velocity_y, walkers.start);
+        let fade = FADE * self.heading_half_width;
+        let mut sum = Rooms {
+            velocity: [&bodies.velocity_x, &bodies.velocity_y],
+            heading: [&bodies.heading_x, &bodies.heading_y],
+            backwards: walkers.backwards,
+            unit: splat::<R, S>(simd, bodies.unit),
+            own: [
+                velocity_y.mul_add(y, velocity_x * x),
+                velocity_x * y - velocity_y * x,
+            ],
+            turned: turned.map(|of| [splat::<R, S>(simd, of.x), splat::<R, S>(simd, of.y)]),
+            times: [
+                splat::<R, S>(simd, self.headway.headway_anticipation),
+                splat::<R, S>(simd, self.evasion_time),
+            ],
+            fastest: walkers.speed * splat::<R, S>(simd, -2.0),
+            per_fade: splat::<R, S>(simd, 1.0 / fade),
+            edge: splat::<R, S>(simd, -self.heading_half_width / fade),
+            far_squared: far * far,
+            farther: walkers.speed * splat::<R, S>(simd, 2.0 * self.evasion_time),
+            far,
+            squared: [far * far; COUNT],
+        };
+        add_pairs(simd, bodies, (walkers.start, runs), &mut sum);
+        let mut rooms = sum.squared;
+        for room in &mut rooms {
+            *room = ((room.sqrt() - length) / time).max(zero);
+        }
+        rooms
+    }
+}
+
+/// All other agents j within `radius` meters of agent `i`, and some farther away, with r_ij = r_i − r_j.
+fn around<'a>(
+    frame: &'a Frame,
+    i: usize,
+    radius: f64,
+) -> impl Iterator<Item = (usize, Vector)> + 'a {
+    let positions = &frame.agents.position;
+    let p = positions[i];
+    let runs = frame.neighbors.around(p, radius);
+    let all = runs.flat_map(move |run| {
+        let from = frame.neighbors.seen_from(p, run.laps);
+        run.indices().map(move |j| (j, from - positions[j]))
+    });
+    all.filter(move |&(j, _)| j != i)
+}
+
+/// `v` turned by the angle of a unit vector.
+pub fn rotated(v: Vector, by: Vector) -> Vector {
+    v * by.x + perpendicular(v) * by.y
+}
+
+/// The least d² along each heading, for eight agents i.
+struct Rooms<'a, R: Real, S: Simd> {
+    /// The velocities of all agents, m/s.
+    velocity: [&'a [R]; 2],
+    /// ê_j of all agents.
+    heading: [&'a [R]; 2],
+    /// −ê_i.
+    backwards: [Lanes<R, S>; 2],
+    /// Meters per coordinate unit.
+    unit: Lanes<R, S>,
+    /// −v_i along the way, and v_i to its right, m/s.
+    own: [Lanes<R, S>; 2],
+    /// The cosine and the sine of each φ_k.
+    turned: [[Lanes<R, S>; 2]; COUNT],
+    /// t and t_e, seconds.
+    times: [Lanes<R, S>; 2],
+    /// −2 s_i: agents come closer at this velocity at most, m/s.
+    fastest: Lanes<R, S>,
+    /// 1/f, 1/m.
+    per_fade: Lanes<R, S>,
+    /// −w_c/f.
+    edge: Lanes<R, S>,
+    /// The square of the distance to which agents look, m².
+    far_squared: Lanes<R, S>,
+    /// How much farther away agents that come toward an agent i count, meters.
+    farther: Lanes<R, S>,
+    /// The distance to which agents look, meters.
+    far: Lanes<R, S>,
+    /// The least d² so far, m².
+    squared: [Lanes<R, S>; COUNT],
+}
+
+impl<'a, R: Real, S: Simd> PairSum<R, S> for Rooms<'a, R, S> {
+    type Run = [&'a [R]; 4];
+
+    #[inline(always)]
+    fn run(&self, run: Range<usize>) -> [&'a [R]; 4] {
+        let [[v_x, v_y], [e_x, e_y]] = [self.velocity, self.heading];
+        [v_x, v_y, e_x, e_y].map(|column| &column[run.clone()])
+    }
+
+    #[inline(always)]
+    fn add(
+        &mut self,
+        simd: S,
+        [dx, dy]: [Lanes<R, S>; 2],
+        [velocity_x, velocity_y, heading_x, heading_y]: [&'a [R]; 4],
+        j: usize,
+    ) {
+        let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
+        let [x, y] = self.backwards;
+        let (dx, dy) = (dx * self.unit, dy * self.unit);
+        let e_x = spread::<R, S>(simd, heading_x[j]);
+        let e_y = spread::<R, S>(simd, heading_y[j]);
+        let against = e_y.mul_add(y, e_x * x).max(zero);
+        let oncoming = (against * splat::<R, S>(simd, headway::AGAINST)).min(one);
+        // Most agents of a run are too far away from all eight, and count for none of them.
+        let sight = oncoming.mul_add(self.farther, self.far);
+        let squared = dy.mul_add(dy, dx * dx);
+        if squared.simd_lt(sight * sight).all_false() {
+            return;
+        }
+        // Where agent j is, and how it moves, along the way and to its left.
+        let ahead = dy.mul_add(y, dx * x);
+        let left = dy * x - dx * y;
+        let v_x = spread::<R, S>(simd, velocity_x[j]);
+        let v_y = spread::<R, S>(simd, velocity_y[j]);
+        let faster = self.own[0] - v_y.mul_add(y, v_x * x);
+        let leftward = v_x * y - v_y * x - self.own[1];
+        let [time, evasion] = self.times;
+        let evasion = evasion * oncoming;
+        for (squared, [cosine, sine]) in self.squared.iter_mut().zip(self.turned) {
+            let along = left.mul_add(sine, ahead * cosine);
+            let across = left * cosine - ahead * sine;
+            let away = leftward.mul_add(sine, faster * cosine);
+            let expected = away.max(zero).mul_add(time, along);
+            let closing = away.min(zero).max(self.fastest);
+            let expected = closing.mul_add(evasion, expected).max(zero);
+            let aside = across.abs().mul_add(self.per_fade, self.edge).max(zero);
+            let behind = (one - along * self.per_fade).max(zero);
+            let inside = across.mul_add(across, expected * expected);
+            *squared = squared.min(self.far_squared.mul_add(aside + behind, inside));
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! How the time gap T depends on motivation, density and narrowings.
+
+use schemars::JsonSchema;
+
+/// Parameters of the factor of T.
+///
+/// People who have been told to hurry, and people who are packed, follow each other more closely; people who are not in
+/// a hurry keep longer gaps where the way becomes narrower.
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
+#[schemars(default)]
+pub struct Gap {
+    /// `headings`: the share of T that agents with a motivation of 1 do without.
+    pub hurry_share: f64,
+    /// `headings`: the share of T that agents in dense crowds do without.
+    pub press_share: f64,
+    /// `headings`, P/m²: the density from which on they do so; they do so fully 1 P/m² above it.
+    pub press_density: f64,
+    /// `headings`: T is longer by this share of it at a narrowing.
+    pub narrowing_share: f64,
+    /// `headings`, meters: the distance from a narrowing at which this share has fallen to 1/e.
+    pub narrowing_range: f64,
+}
+
+impl Default for Gap {
+    fn default() -> Self {
+        Self {
+            hurry_share: 0.0,
+            press_share: 0.0,
+            press_density: 4.5,
+            narrowing_share: 0.0,
+            narrowing_range: 2.0,
+        }
+    }
+}
+
+impl Gap {
+    /// The factor of T of an agent with this motivation, 0 to 1, at this density, P/m². `narrowing` has the distance to
+    /// the next narrowing, meters, and how much it counts, from 0 to 1.
+    pub fn factor(&self, motivation: f64, density: f64, narrowing: Option<[f64; 2]>) -> f64 {
+        let hurry = 1.0 - self.hurry_share * motivation;
+        let press = 1.0 - self.press_share * (density - self.press_density).clamp(0.0, 1.0);
+        let narrow = narrowing.map_or(1.0, |[distance, counts]| {
+            let near = distance / self.narrowing_range;
+            1.0 + self.narrowing_share * counts * (-near * near).exp()
+        });
+        hurry * press * narrow
+    }
+
+    /// Narrowings farther away than this do not count, meters.
+    pub fn reach(&self) -> f64 {
+        3.0 * self.narrowing_range
+    }
+
+    /// The greatest factor.
+    pub fn longest(&self) -> f64 {
+        1.0 + self.narrowing_share.max(0.0)
+    }
+
+    /// The least factor.
+    pub fn shortest(&self) -> f64 {
+        (1.0 - self.hurry_share) * (1.0 - self.press_share)
+    }
+}

@@ -1,0 +1,109 @@
+//! The quantities that a scene needs.
+
+use crate::engine::agents::Agents;
+use crate::engine::forces::near::Wanted;
+use crate::engine::forces::walking::{Headings, WalkingLaw};
+use crate::engine::profile::Profile;
+use crate::engine::scene::Scene;
+use crate::engine::ways::Narrowings;
+
+/// The widest place that counts as a narrowing, meters.
+const WIDEST_NARROWING: f64 = 6.0;
+
+/// The quantities that a scene needs, decided once. No other quantity is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Needs {
+    /// Density, read in every frame by SPH forces, blending or forces from outside this crate.
+    pub density: bool,
+    /// Sums over near neighbors that some profile reads.
+    pub pairs: Wanted,
+    /// Some profile uses RVO.
+    pub rvo: bool,
+    /// Some profile uses social forces.
+    pub social: bool,
+    /// Some profile has a walking law that looks ahead.
+    pub walking: bool,
+    /// The largest avoidance radius, meters.
+    pub avoidance: Option<f64>,
+    /// Some agents choose headings.
+    pub headings: bool,
+    /// Some agents leave at their goal.
+    pub removal: bool,
+    /// Agents have preferred speeds of their own, or do not walk all the time.
+    pub paces: bool,
+    /// Some agents walk in a direction, not to a goal.
+    pub directions: bool,
+}
+
+impl Needs {
+    /// The union of two needs.
+    pub fn with(&self, other: &Self) -> Self {
+        let radii = self.avoidance.into_iter().chain(other.avoidance);
+        Self {
+            density: self.density || other.density,
+            pairs: self.pairs.with(other.pairs),
+            rvo: self.rvo || other.rvo,
+            social: self.social || other.social,
+            walking: self.walking || other.walking,
+            headings: self.headings || other.headings,
+            avoidance: radii.reduce(f64::max),
+            removal: self.removal || other.removal,
+            paces: self.paces || other.paces,
+            directions: self.directions || other.directions,
+        }
+    }
+}
+
+impl Scene {
+    /// The quantities that this scene needs; only these are computed.
+    pub fn needs(&self) -> Needs {
+        let wanted = self.profiles().map(Profile::wanted);
+        let pairs = wanted.fold(Wanted::default(), Wanted::with);
+        let mut groups = self.groups.iter();
+        let blending = groups.any(|group| group.blend.depends_on_density());
+        let own = self.own_forces.iter().any(|force| force.needs_density());
+        let mut laws = self.profiles().filter_map(|profile| profile.walking);
+        let law = laws.any(|law| law.needs_density());
+        Needs {
+            density: pairs.pressure || pairs.viscosity || blending || law || own,
+            pairs,
+            rvo: self.groups.iter().any(|group| group.blend.rvo().is_some()),
+            social: !self.social_forces().is_empty(),
+            walking: !self.walking_laws().is_empty(),
+            headings: self.headings().next().is_some(),
+            avoidance: (self.profiles())
+                .filter_map(|profile| profile.navigation.avoidance_radius())
+                .reduce(f64::max),
+            removal: self
+                .groups
+                .iter()
+                .any(|group| group.removal_radius.is_some()),
+            paces: !self.journeys.zones.is_empty(),
+            directions: self.groups.iter().any(|group| group.direction.is_some()),
+        }
+    }
+
+    /// The laws of headings of all profiles.
+    fn headings(&self) -> impl Iterator<Item = &Headings> {
+        let laws = self
+            .profiles()
+            .filter_map(|profile| profile.walking.as_ref());
+        laws.filter_map(WalkingLaw::headings)
+    }
+
+    /// The narrowings of the floor, if a walking law heeds them.
+    pub fn narrowings(&self) -> Narrowings {
+        let heeds = self.headings().any(|law| law.gap.narrowing_share != 0.0);
+        let ways = self.ways.as_ref().filter(|_| heeds);
+        ways.map_or_else(Narrowings::default, |ways| {
+            Narrowings::of(&ways.floor.mesh, WIDEST_NARROWING)
+        })
+    }
+
+    /// The distance of walls that walking laws see, meters.
+    pub(super) fn sight(&self, agents: &Agents) -> Option<f64> {
+        let pace = self.highest_pace(agents);
+        let laws = self.walking_laws().into_iter();
+        laws.filter_map(|law| law.sees_walls(pace)).reduce(f64::max)
+    }
+}

@@ -1,0 +1,55 @@
+//! What the time gap of the law of headings depends on.
+
+use super::{Fixed, Simulation};
+use crate::engine::forces::walking::headings::{Fan, Headings, before_wall};
+use crate::engine::frame::Frame;
+use crate::engine::math::{Vector, direction, perpendicular};
+
+/// Agents see narrowings up to this far beyond the point that they walk to, meters.
+const BEYOND: f64 = 1.0;
+/// Places that are this many times narrower than the floor where the agent is count in full; those that are not
+/// narrower do not count.
+const MUCH_NARROWER: f64 = 1.5;
+
+impl Simulation {
+    /// The headings between which agent `i` chooses; `None` if it follows no law of headings or does not walk.
+    pub fn fan(&self, i: usize) -> Option<Fan> {
+        let frame = self.frame();
+        let law = self.blend(i).walking_law()?;
+        let law = law.headings()?;
+        frame.fields.preferred_velocity.get(i)?;
+        law.fan(&frame, i, self.fixed.gap(&frame, i, law))
+    }
+}
+
+impl Fixed {
+    /// The factor of T of agent `i`.
+    pub(super) fn gap(&self, frame: &Frame, i: usize, law: &Headings) -> f64 {
+        let agents = frame.agents;
+        let motivation = self.scene.motivation(agents, i, frame.clock.time());
+        let density = frame.fields.density.get(i).copied().unwrap_or(0.0);
+        let narrowing = match law.gap.narrowing_share {
+            0.0 => None,
+            _ => self.narrowing(frame, i, law),
+        };
+        law.gap.factor(motivation, density, narrowing)
+    }
+
+    /// The distance of agent `i` from the narrowing that it walks to, meters, and how much it counts, from 0 to 1.
+    fn narrowing(&self, frame: &Frame, i: usize, law: &Headings) -> Option<[f64; 2]> {
+        let p = frame.agents.position[i];
+        let heading = direction(frame.fields.preferred_velocity[i]);
+        let aim = frame.agents.aim.get(i)?;
+        let far = (law.gap.reach()).min((aim - p).norm() + BEYOND);
+        let next = self.narrowings.next(p, heading, far)?;
+        let side = perpendicular(heading);
+        let free = |side: Vector| {
+            let walls = frame.neighbors.far_walls(i).iter();
+            let before = walls.map(|&k| before_wall(frame.walls.wall(k), p, 0.0, side));
+            before.fold(f64::INFINITY, f64::min)
+        };
+        let here = free(side) + free(-side);
+        let counts = (here / next.width - 1.0) / (MUCH_NARROWER - 1.0);
+        Some([next.distance, counts.clamp(0.0, 1.0)])
+    }
+}

@@ -1,0 +1,386 @@
+//! The law of headings: agents choose a direction by the room that it offers.
+
+use crate::common::walking::{crowd, walking};
+use crate::common::{blend_with, evaluated, person, run, scene, vector, walker};
+use rand::Rng;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::forces::walking::headings::{COUNT, STRAIGHT, before_wall, rotated};
+use sandbox::engine::forces::walking::{Headings, Headway};
+use sandbox::engine::geometry::{Area, Polygon, Ring, Wall};
+use sandbox::engine::math::{Vector, direction, perpendicular};
+use sandbox::engine::pairs::Precision;
+use sandbox::engine::random::{Purpose, stream};
+use sandbox::engine::scene::Scene;
+use sandbox::engine::simulation::Simulation;
+use sandbox::engine::ways::{Floor, Narrowings};
+use sandbox::scenario::catalog::{Parameters, WalkingLawKind};
+
+fn parameters() -> Parameters {
+    Parameters {
+        walking_law: Some(WalkingLawKind::Headings),
+        headway_anticipation: Some(0.4),
+        ..Parameters::default()
+    }
+}
+
+fn law() -> Headings {
+    parameters().headings()
+}
+
+fn lone(agents: Vec<NewAgent>, walls: Vec<Polygon>) -> Scene {
+    let mut scene = scene(walls, blend_with("sph", &parameters()));
+    scene.agents = agents;
+    scene
+}
+
+/// The utilities of agent `i`, agent by agent, from the positions and velocities of all.
+fn utilities(simulation: &Simulation, i: usize, law: &Headings) -> [f64; COUNT] {
+    let frame = simulation.frame();
+    let (agents, wish) = (frame.agents, frame.fields.preferred_velocity[i]);
+    let (way, speed) = (direction(wish), wish.norm());
+    let time = law.headway.headway_time;
+    let far = law.headway.headway_length + time * speed + law.look_ahead;
+    std::array::from_fn(|k| {
+        let angle = (k as f64 - 3.0) * law.heading_angle.to_radians() / 3.0;
+        let heading = way * angle.cos() + perpendicular(way) * angle.sin();
+        let mut least = far;
+        for j in (0..agents.len()).filter(|&j| j != i) {
+            let d = agents.position[j] - agents.position[i];
+            let u = (agents.velocity[j] - agents.velocity[i]).dot(&heading);
+            let (along, across) = (d.dot(&heading), heading.perp(&d).abs());
+            let fade = 0.5 * law.heading_half_width;
+            let outside =
+                ((across - law.heading_half_width) / fade).max(0.0) + (1.0 - along / fade).max(0.0);
+            let cosine = direction(frame.fields.preferred_velocity[j]).dot(&way);
+            let oncoming = (-4.0 * cosine).clamp(0.0, 1.0);
+            let expected = along
+                + law.headway.headway_anticipation * u.max(0.0)
+                + law.evasion_time * oncoming * u.clamp(-2.0 * speed, 0.0);
+            let squared = expected.max(0.0).powi(2) + across.powi(2) + far * far * outside;
+            least = least.min(squared.sqrt());
+        }
+        let room = ((least - law.headway.headway_length) / time).max(0.0);
+        room * angle.cos() - law.heading_persistence * angle.abs()
+    })
+}
+
+#[test]
+fn agents_choose_the_heading_with_the_greatest_utility() {
+    let law = law();
+    for (precision, exact) in [(Precision::Double, 1e-12), (Precision::Mixed, 1e-4)] {
+        let (mut turned, mut all) = (0, 0);
+        for seed in 0..10 {
+            let mut scene = crowd(WalkingLawKind::Headings, seed);
+            scene.precision = precision;
+            let simulation = evaluated(scene);
+            let frame = simulation.frame();
+            for i in 0..frame.agents.len() {
+                let held = frame.agents.heading[i];
+                if frame.fields.preferred_velocity[i].norm() == 0.0 {
+                    assert_eq!(held, 0);
+                    continue;
+                }
+                let all_utilities = utilities(&simulation, i, &law);
+                let best = all_utilities.iter().copied().fold(f64::MIN, f64::max);
+                let chosen = all_utilities[(STRAIGHT as i32 + i32::from(held)) as usize];
+                assert!(
+                    best - chosen <= exact,
+                    "{precision:?}, agent {i}: {all_utilities:?}, {held}"
+                );
+                turned += usize::from(held != 0);
+                all += 1;
+            }
+        }
+        assert!(turned > all / 10 && turned < all, "{turned} of {all}");
+    }
+}
+
+#[test]
+fn agents_keep_the_time_gap_along_their_heading() {
+    let law = law();
+    let mut slowed = 0;
+    for seed in 0..5 {
+        let simulation = evaluated(crowd(WalkingLawKind::Headings, seed));
+        let frame = simulation.frame();
+        let agents = frame.agents;
+        for i in 0..agents.len() {
+            let wish = frame.fields.preferred_velocity[i];
+            if wish.norm() == 0.0 {
+                continue;
+            }
+            let heading = rotated(direction(wish), law.turned(law.followed(&frame, i)));
+            let headway: Headway = law.headway;
+            let range = headway.range(wish.norm());
+            let distances = (0..agents.len()).filter(|&j| j != i).map(|j| {
+                let d = agents.position[j] - agents.position[i];
+                let away = (agents.velocity[j] - agents.velocity[i]).dot(&heading);
+                let alike = direction(frame.fields.preferred_velocity[j]).dot(&heading);
+                let place = [d.dot(&heading), d.dot(&perpendicular(heading))];
+                headway.distance_in_lane(range, place, [away, alike])
+            });
+            let speed = headway.speed(wish.norm(), distances.fold(range, f64::min));
+            let found = walking(&simulation, agents.id[i]) * (agents.mass[i] / 2.0) + wish;
+            assert!(
+                (found - heading * speed).norm() < 1e-9,
+                "agent {i}: {found}, {}",
+                heading * speed
+            );
+            slowed += usize::from(speed < wish.norm());
+        }
+    }
+    assert!(slowed > 100, "{slowed}");
+}
+
+#[test]
+fn a_fan_shows_what_the_agent_has_chosen() {
+    let law = law();
+    let mut ends = 0;
+    for seed in 0..5 {
+        let simulation = evaluated(crowd(WalkingLawKind::Headings, seed));
+        for i in 0..simulation.frame().agents.len() {
+            let Some(fan) = simulation.fan(i) else {
+                assert_eq!(
+                    simulation.frame().fields.preferred_velocity[i],
+                    Vector::zeros()
+                );
+                continue;
+            };
+            let best = fan
+                .headings
+                .iter()
+                .map(|of| of.utility)
+                .fold(f64::MIN, f64::max);
+            assert!(best - fan.headings[fan.followed].utility < 1e-9);
+            for heading in &fan.headings {
+                let free = law.sight(simulation.frame().fields.preferred_velocity[i].norm(), 1.0);
+                let most = (free - law.headway.headway_length) / law.headway.headway_time;
+                assert!(heading.room <= most + 1e-12);
+                assert_eq!(
+                    heading.ends_at.is_some(),
+                    heading.room < most - 1e-12,
+                    "{heading:?}, {most}"
+                );
+                ends += usize::from(heading.ends_at.is_some());
+            }
+        }
+    }
+    assert!(ends > 1000, "{ends}");
+}
+
+#[test]
+fn a_lone_agent_walks_straight_at_its_preferred_speed() {
+    let mut simulation = evaluated(lone(
+        vec![person(Vector::zeros(), vector(100.0, 30.0))],
+        vec![],
+    ));
+    run(&mut simulation, 500);
+    let agents = simulation.frame().agents;
+    assert!((agents.velocity[0].norm() - 1.4).abs() < 1e-6);
+    assert!(agents.position[0].perp(&vector(100.0, 30.0)).abs() < 1e-9);
+}
+
+/// How far agent 0, which starts 2 m behind a slow one, is ahead of it after 20 s, meters.
+fn lead(parameters: &Parameters) -> f64 {
+    let mut scene = scene(vec![], blend_with("sph", parameters));
+    let slow = NewAgent {
+        preferred_speed: Some(0.5),
+        ..person(vector(2.0, 0.01), vector(200.0, 0.01))
+    };
+    scene.agents = vec![person(Vector::zeros(), vector(200.0, 0.0)), slow];
+    let mut simulation = evaluated(scene);
+    run(&mut simulation, 1000);
+    let agents = simulation.frame().agents;
+    let at = |id| agents.position[agents.index_of(id).unwrap()].x;
+    at(0) - at(1)
+}
+
+#[test]
+fn a_fast_agent_overtakes_a_slow_one_and_with_the_headway_law_stays_behind() {
+    let free = 20.0 * (1.4 - 0.5) - 2.0;
+    let lead_with = lead(&parameters());
+    assert!(
+        lead_with > 0.9 * free && lead_with < free,
+        "{lead_with} of {free}"
+    );
+    let behind = lead(&Parameters {
+        walking_law: Some(WalkingLawKind::Headway),
+        ..Parameters::default()
+    });
+    assert!(behind < 0.0, "{behind}");
+}
+
+#[test]
+fn two_agents_that_meet_pass_each_other() {
+    let (left, right) = (vector(-6.0, 0.0), vector(6.0, 0.02));
+    let agents = vec![
+        walker(left, vector(1.4, 0.0), vector(100.0, 0.0)),
+        walker(right, vector(-1.4, 0.0), vector(-100.0, 0.0)),
+    ];
+    let mut simulation = evaluated(lone(agents, vec![]));
+    let mut nearest = f64::INFINITY;
+    for _ in 0..500 {
+        simulation.step().unwrap();
+        let at = &simulation.frame().agents.position;
+        nearest = nearest.min((at[0] - at[1]).norm());
+    }
+    let agents = simulation.frame().agents;
+    let at = |id: u32| agents.position[agents.index_of(id).unwrap()].x;
+    assert!(nearest > 0.45, "{nearest}: they touch");
+    assert!(at(0) > 6.0 && at(1) < -6.0, "{} {}", at(0), at(1));
+}
+
+#[test]
+fn a_mirrored_crowd_chooses_mirrored_headings() {
+    let mirror = |v: Vector| vector(v.x, -v.y);
+    for seed in 0..5 {
+        let original = crowd(WalkingLawKind::Headings, seed);
+        let mut mirrored = original.clone();
+        for agent in &mut mirrored.agents {
+            agent.position = mirror(agent.position);
+            agent.velocity = mirror(agent.velocity);
+            agent.goal = mirror(agent.goal);
+        }
+        let [one, two] = [original, mirrored].map(evaluated);
+        let [one, two] = [&one, &two].map(|simulation| simulation.frame().agents);
+        for i in 0..one.len() {
+            let j = two.index_of(one.id[i]).unwrap();
+            assert_eq!(one.heading[i], -two.heading[j], "agent {}", one.id[i]);
+        }
+    }
+}
+
+#[test]
+fn motivation_and_density_shorten_the_gap_and_narrowings_lengthen_it() {
+    let gap = Parameters {
+        hurry_share: Some(0.5),
+        press_share: Some(0.4),
+        press_density: Some(4.0),
+        narrowing_share: Some(0.6),
+        narrowing_range: Some(2.0),
+        ..parameters()
+    };
+    let gap = gap.headings().gap;
+    assert_eq!(gap.factor(0.0, 0.0, None), 1.0);
+    assert_eq!(gap.factor(1.0, 0.0, None), 0.5);
+    assert!((gap.factor(0.0, 9.0, None) - 0.6).abs() < 1e-12);
+    assert!((gap.factor(0.0, 4.5, None) - 0.8).abs() < 1e-12);
+    assert!((gap.factor(0.0, 0.0, Some([0.0, 1.0])) - 1.6).abs() < 1e-12);
+    assert_eq!(gap.factor(0.0, 0.0, Some([0.0, 0.0])), 1.0);
+    let at_range = gap.factor(0.0, 0.0, Some([2.0, 1.0]));
+    assert!((at_range - 1.0 - 0.6 * (-1.0_f64).exp()).abs() < 1e-12);
+    for motivation in [0.0, 0.3, 1.0] {
+        for density in [0.0, 4.7, 10.0] {
+            for narrowing in [None, Some([0.5, 0.7])] {
+                let factor = gap.factor(motivation, density, narrowing);
+                assert!(factor >= gap.shortest() && factor <= gap.longest());
+            }
+        }
+    }
+    // The agent behind another one walks faster if it hurries.
+    let allowed = |motivation: f64| {
+        let all = Parameters {
+            hurry_share: Some(0.5),
+            heading_angle: Some(0.0),
+            ..parameters()
+        };
+        let mut scene = scene(vec![], blend_with("sph", &all));
+        scene.groups[0].motivation = motivation;
+        scene.agents = vec![
+            person(Vector::zeros(), vector(100.0, 0.0)),
+            person(vector(0.6, 0.0), vector(100.0, 0.0)),
+        ];
+        let simulation = evaluated(scene);
+        let agents = simulation.frame().agents;
+        agents.allowed_speed[agents.index_of(0).unwrap()].unwrap()
+    };
+    let law = law().headway;
+    let expected = (0.6 - law.headway_length) / law.headway_time;
+    assert!((allowed(0.0) - expected).abs() < 1e-9);
+    assert!((allowed(1.0) - 2.0 * expected).abs() < 1e-9);
+}
+
+#[test]
+fn the_room_before_a_wall_is_where_the_body_touches_it() {
+    let mut rng = stream(3, Purpose::Placement, 0, 0);
+    let mut random = |size: f64| rng.random_range(-size..size);
+    let (mut touched, mut missed) = (0, 0);
+    for _ in 0..5_000 {
+        let wall = Wall::new(
+            vector(random(3.0), random(3.0)),
+            vector(random(3.0), random(3.0)),
+            0,
+            0,
+        );
+        let p = vector(random(3.0), random(3.0));
+        let heading = direction(vector(random(1.0), random(1.0)));
+        let radius = 0.1 + 0.2 * random(1.0).abs();
+        let gap =
+            |s: f64| (wall.nearest_point(p + heading * s).point - p - heading * s).norm() - radius;
+        if wall.signed_distance(p) < 0.0 || gap(0.0) < 1e-6 {
+            continue;
+        }
+        let room = before_wall(&wall, p, radius, heading);
+        let until = room.min(20.0);
+        for k in 0..200 {
+            let s = until * f64::from(k) / 200.0;
+            assert!(
+                gap(s) > -1e-9,
+                "the body is in the wall before its end: {s} of {room}"
+            );
+        }
+        if room.is_finite() {
+            assert!(gap(room).abs() < 1e-9, "{}", gap(room));
+            touched += 1;
+        } else {
+            missed += 1;
+        }
+    }
+    assert!(touched > 300 && missed > 1000, "{touched}, {missed}");
+}
+
+/// A room of 10 m × 10 m with a door of `width` meters in its right wall, 0.2 m thick, and a room behind.
+fn floor(width: f64) -> Floor {
+    let half = 0.5 * width;
+    let outline = vec![
+        vector(0.0, 0.0),
+        vector(10.0, 0.0),
+        vector(10.0, 5.0 - half),
+        vector(10.2, 5.0 - half),
+        vector(10.2, 0.0),
+        vector(20.0, 0.0),
+        vector(20.0, 10.0),
+        vector(10.2, 10.0),
+        vector(10.2, 5.0 + half),
+        vector(10.0, 5.0 + half),
+        vector(10.0, 10.0),
+        vector(0.0, 10.0),
+    ];
+    let area = Area {
+        exterior: Ring::new(outline).unwrap(),
+        holes: Vec::new(),
+    };
+    Floor::new(&[area], 0.0).unwrap()
+}
+
+#[test]
+fn a_door_is_the_next_narrowing_of_those_who_walk_to_it() {
+    for width in [0.7, 1.2, 3.0] {
+        let narrowings = Narrowings::of(&floor(width).mesh, 6.0);
+        let p = vector(6.0, 5.0);
+        let next = narrowings.next(p, vector(1.0, 0.0), 9.0).unwrap();
+        assert!((next.distance - 4.0).abs() < 1e-9 && (next.width - width).abs() < 1e-9);
+        assert_eq!(narrowings.next(p, vector(-1.0, 0.0), 9.0), None);
+        assert_eq!(narrowings.next(p, vector(1.0, 0.0), 3.9), None);
+        let aside = direction(vector(4.0, 0.5 * width + 0.05));
+        assert_eq!(narrowings.next(p, aside, 4.5), None);
+    }
+}
+
+#[test]
+fn a_lone_agent_that_rests_stays_at_rest() {
+    let place = vector(1.0, 1.0);
+    let mut simulation = evaluated(lone(vec![person(place, place)], vec![]));
+    run(&mut simulation, 100);
+    assert_eq!(simulation.frame().agents.position[0], place);
+    assert!(simulation.fan(0).is_none());
+}
