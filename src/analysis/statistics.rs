@@ -7,7 +7,9 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize, Serializer};
-use statrs::distribution::{Beta, ContinuousCDF, StudentsT, Uniform};
+use statrs::distribution::{
+    Beta, Binomial, ContinuousCDF, DiscreteCDF, Normal, StudentsT, Uniform,
+};
 use statrs::statistics::{Data, Max, Min, OrderStatistics};
 use statrs::stats_tests::NaNPolicy;
 use statrs::stats_tests::ks_test::{KSOneSampleAlternativeMethod, ks_onesample};
@@ -96,6 +98,14 @@ pub fn student_95(count: usize) -> Option<f64> {
 pub fn student(degrees: usize, probability: f64) -> Option<f64> {
     let distribution = StudentsT::new(0.0, 1.0, degrees as f64).ok()?;
     Some(distribution.inverse_cdf(0.5 + 0.5 * probability))
+}
+
+/// The tail of the bootstrap distribution of a mean at each end of its 95 % expanded percentile interval (Hesterberg
+/// 2015): Φ(−√(n / (n − 1)) t), with the 97.5 % quantile t of Student's t. `None` for fewer than two values.
+pub fn expanded_tail(count: usize) -> Option<f64> {
+    let t = student_95(count)?;
+    let of = count as f64;
+    Some(Normal::standard().cdf(-(of / (of - 1.0)).sqrt() * t))
 }
 
 /// A share of runs, with its 95 % confidence interval (Clopper and Pearson 1934).
@@ -255,6 +265,27 @@ impl Line {
             slope,
             offset: Range::of(&offsets).median,
         })
+    }
+}
+
+/// The probability that the value with this rank among `draws` (1 is the smallest) is not below the quantile `share` of
+/// their distribution, whatever it is (Wilks 1941): that fewer than `rank` draws are below this quantile.
+pub fn probability_above(rank: usize, draws: usize, share: f64) -> f64 {
+    let below = Binomial::new(share, draws as u64).ok();
+    match (rank, below) {
+        (0, _) | (_, None) => 0.0,
+        (rank, Some(below)) => below.cdf(rank as u64 - 1),
+    }
+}
+
+/// The number of draws whose largest is not below the quantile `share` with this probability: 1 − shareⁿ ≥ probability.
+pub fn draws_above(share: f64, probability: f64) -> usize {
+    let draws = ((1.0 - probability).ln() / share.ln()).ceil().max(1.0) as usize;
+    // A logarithm that is rounded up costs one draw too many.
+    let fewer = draws - 1;
+    match fewer > 0 && 1.0 - share.powi(fewer as i32) >= probability {
+        true => fewer,
+        false => draws,
     }
 }
 

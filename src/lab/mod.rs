@@ -3,7 +3,8 @@
 //! ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]), run time against error ([`accuracy`]),
 //! cases with known answers and scenes of experiments ([`suite`]), and the search for parameters that reproduce them
 //! ([`calibrate`]). [`measure`] computes densities, fields, fundamental diagrams and flows of any trajectory;
-//! [`differences`] compares two results. Their pictures share [`gallery`].
+//! [`differences`] compares two results. Their pictures share [`gallery`] and
+//! [`mod@curves`].
 
 pub mod error;
 
@@ -17,7 +18,11 @@ pub mod measure;
 
 pub mod differences;
 
+pub mod curves;
+
 pub mod sweep;
+
+pub mod suite;
 
 pub mod estimate;
 
@@ -28,7 +33,5 @@ pub mod bench;
 pub mod stress;
 
 pub mod accuracy;
-
-pub mod suite;
 
 pub mod calibrate;

@@ -79,8 +79,8 @@ impl<'a> Gathered<'a> {
         }
     }
 
-    /// Writes `NAME.csv`, `NAME-summary.csv` and `NAME-results.json` into the store's folder, and the picture as
-    /// `NAME.svg` and `NAME.png`, if there is one.
+    /// Writes `NAME.csv`, `NAME-summary.csv` and `NAME-results.json` into the store's folder, the picture as `NAME.svg`
+    /// and `NAME.png`, if there is one, and the mean curves, if there are any.
     ///
     /// # Errors
     /// They cannot be written.
@@ -96,6 +96,8 @@ impl<'a> Gathered<'a> {
             sheet.save(&store.folder().join(&self.study.name))?;
             written.extend(files.map(|file| store.folder().join(file)));
         }
+        let curves = self.write_curves(store)?.into_iter();
+        written.extend(curves.map(|file| store.folder().join(file)));
         Ok(written)
     }
 

@@ -24,6 +24,7 @@
 
 mod cell;
 mod choice;
+mod curves;
 mod entries;
 mod gathered;
 mod pictures;

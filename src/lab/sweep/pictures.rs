@@ -85,7 +85,14 @@ impl Gathered<'_> {
         };
         let columns = panels.len().min(COLUMNS);
         let size = if over.len() == 2 { MAP } else { PANEL };
-        Ok(Some(Sheet::new(&self.study.name, columns, size, panels)))
+        let title = match over.len() {
+            2 => self.study.name.clone(),
+            _ => format!(
+                "{}: means with 95 % intervals (seeds, Student's t)",
+                self.study.name
+            ),
+        };
+        Ok(Some(Sheet::new(&title, columns, size, panels)))
     }
 
     /// The measurements to draw: their numbers in the means, and their names.
@@ -236,7 +243,7 @@ fn others(combinations: &[Combination], over: &[&str], axes: &[String]) -> Vec<S
 }
 
 /// The settings of a combination that are not on an axis, as text: `sf->sph, viscosity=5`.
-fn other(combination: &Combination, over: &[&str], axes: &[String]) -> String {
+pub(super) fn other(combination: &Combination, over: &[&str], axes: &[String]) -> String {
     let Some(cell) = combination.cells.first() else {
         return String::new();
     };

@@ -107,7 +107,8 @@ impl Gathered<'_> {
         for (k, name) in self.numbers().iter().enumerate() {
             columns = columns.fixed(name, 3, |row| confident(row, k));
         }
-        columns.table().text()
+        let about = "± is half the 95 % confidence interval of the mean over seeds (Student's t).";
+        format!("{}\n{about}\n", columns.table().text())
     }
 
     /// The cells of a shard with their states, for a terminal.
