@@ -226,7 +226,10 @@ fn smaller_errors_are_expected_to_need_more_runs() {
             means: means.clone(),
             tolerance,
         };
-        predicted(&[goal], &offers([0, 0, 0]), 1, 0.95).iter().sum()
+        predicted(&[goal], &offers([0, 0, 0]), 1, (0.95, 100_000))
+            .0
+            .iter()
+            .sum()
     };
     let counts = [0.2, 0.1, 0.05, 0.02].map(runs);
     assert_eq!(counts[0], 10, "the first round is enough");

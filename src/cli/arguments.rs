@@ -10,7 +10,7 @@ use super::values::{
     self, dpi, every_frames, frame_rate, millimeters, positive_seconds, recording, seconds, seed,
     threads,
 };
-use crate::lab::estimate::{Limits, Request, Wanted};
+use crate::lab::estimate::{Bound, Limits, Request, Sampling, Wanted};
 use crate::output::plot::Print;
 use crate::scenario::Preset;
 
@@ -169,33 +169,56 @@ pub struct TrajectoryOptions {
 
 /// Results, and the errors that they may have.
 #[derive(Args)]
+#[command(group(ArgGroup::new("asked").multiple(true).args(["errors", "bounds"])))]
 pub struct ErrorOptions {
     /// A result, and the error that it may have: half the width of its confidence interval, in percent of the value or
     /// in its unit; may be repeated. In a study: of each combination of settings, which then has as many runs as this
     /// error needs
     #[arg(long = "error", value_name = "RESULT=ERROR")]
     pub errors: Vec<Wanted>,
-    /// The probability that an interval holds the value, percent
-    #[arg(long, value_name = "PERCENT", default_value_t = 95.0, requires = "errors", value_parser = values::confidence)]
+    /// A result, and the share of runs that shall be at most a bound (below 50%: that shall be below, while the others
+    /// are at least the bound); may be repeated. It makes as many runs as this needs: 59 for 95%
+    #[arg(long = "bound", value_name = "RESULT=SHARE")]
+    pub bounds: Vec<Bound>,
+    /// The runs that bounds are made of: `imo`: 50 runs of 10 populations, as in IMO's guidelines on evacuation
+    /// analysis [default: as many as the bound needs]
+    #[arg(long, value_name = "imo", requires = "bounds", value_parser = PossibleValuesParser::new(["imo"]))]
+    pub runs: Option<String>,
+    /// The probability that an interval holds the value, or that a bound holds, percent
+    #[arg(long, value_name = "PERCENT", default_value_t = 95.0, requires = "asked", value_parser = values::confidence)]
     pub confidence: f64,
     /// The most runs, at all time steps together
-    #[arg(long, value_name = "N", default_value_t = 500, requires = "errors", value_parser = values::runs)]
+    #[arg(long, value_name = "N", default_value_t = 500, requires = "asked", value_parser = values::runs)]
     pub most_runs: usize,
     /// The time after which no more runs begin, minutes [default: no limit]
-    #[arg(long, value_name = "MINUTES", requires = "errors", value_parser = values::minutes)]
+    #[arg(long, value_name = "MINUTES", requires = "asked", value_parser = values::minutes)]
     pub most_minutes: Option<f64>,
+    /// Also time three runs with each preset, and say what the same errors would cost with it alone
+    #[arg(long, requires = "errors")]
+    pub costs: bool,
 }
 
 impl ErrorOptions {
+    /// Whether anything is asked for.
+    pub fn is_given(&self) -> bool {
+        !self.errors.is_empty() || !self.bounds.is_empty()
+    }
+
     /// What is asked for.
     pub fn request(&self) -> Request {
         Request {
             wanted: self.errors.clone(),
+            bounds: self.bounds.clone(),
+            sampling: match self.runs {
+                Some(_) => Sampling::Imo,
+                None => Sampling::Seeds,
+            },
             confidence: self.confidence / 100.0,
             limits: Limits {
                 runs: self.most_runs,
                 secs: self.most_minutes.map(|minutes| 60.0 * minutes),
             },
+            costs: self.costs,
         }
     }
 }

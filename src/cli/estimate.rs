@@ -1,6 +1,6 @@
 //! `sandbox estimate`: results with the errors asked for.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
@@ -10,7 +10,11 @@ use super::failure::Failure;
 use super::inputs::settings;
 use super::terminal::{talk, tell};
 use super::watch::Watch;
-use crate::lab::estimate::{Answer, Forecast, PILOT, Question, run as make, sheet};
+use crate::lab::curves::csv as curves_csv;
+use crate::lab::estimate::{
+    Answer, Answers, Forecast, PILOT, Question, Request, Validated, bound_sheet, curve_sheet,
+    run as make, sheet,
+};
 use crate::lab::machine::main_memory;
 use crate::output::plot::Print;
 use crate::runs::case::Source;
@@ -21,7 +25,8 @@ pub const EXAMPLES: &str = "\
 Examples:
   sandbox estimate evacuation --error flow_per_s=1% --error density_mean_15s=0.5%
   sandbox estimate scenarios/office.json --error t95_secs=3% --profile walk+sph --out results
-  sandbox estimate evacuation --profile 'sf->sph' --error flow_per_s=0.05 --confidence 99 --most-minutes 5";
+  sandbox estimate evacuation --profile 'sf->sph' --error flow_per_s=0.05 --confidence 99 --most-minutes 5
+  sandbox estimate evacuation --bound time_secs=95%";
 
 #[derive(Args)]
 pub struct EstimateOptions {
@@ -45,9 +50,9 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
     let program = &options.scene.program;
     use_threads(program.threads)?;
     options.print.apply();
-    if options.error.errors.is_empty() {
-        let reason =
-            "--error is missing: a result with the error that it may have, such as flow_per_s=1%";
+    if !options.error.is_given() {
+        let reason = "--error is missing: a result with the error that it may have, such as flow_per_s=1% (or \
+                      --bound: a share of runs, such as time_secs=95%)";
         return Err(Failure::Input(reason.to_owned()));
     }
     let source = Source::named(&options.scenario);
@@ -59,7 +64,7 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
     }
     let forecast = Forecast::of(&question, &Store::at(&options.out))?;
     if options.plan {
-        return plan(forecast.as_ref(), program.json, &options.out);
+        return plan(&question.request, forecast.as_ref(), options);
     }
     if let Some(forecast) = &forecast {
         talk(&format!("note: {}", forecast.text().trim_end()));
@@ -70,8 +75,17 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
     let name = question.file_name();
     let pictures = Print::of_program().extensions();
     let pictures = pictures.map(|extension| format!(".{extension}"));
-    let tables = [".json", ".csv", "-steps.csv", ".md"].map(str::to_owned);
-    for end in tables.into_iter().chain(pictures) {
+    let pictures =
+        pictures.flat_map(|end| ["", "-curves", "-bounds"].map(|of| format!("{of}{end}")));
+    let tables = [
+        ".json",
+        ".csv",
+        "-steps.csv",
+        "-bounds.csv",
+        "-curves.csv",
+        ".md",
+    ];
+    for end in tables.into_iter().map(str::to_owned).chain(pictures) {
         // Another process may make the same estimate at the same time, so do not create trial files.
         outputs.writes(
             "--out",
@@ -82,40 +96,86 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
     outputs.check()?;
     let store = Store::open(&options.out)?;
     let runs = make(&question, &store, &Watch::new())?;
-    let answer = Answer::of(&runs);
-    let files = [
+    let answer = Answer {
+        validation: Validated::of(&question)?,
+        ..Answer::of(&runs)
+    };
+    let mut files = vec![
         (".json", format!("{:#}\n", answer.json()).into_bytes()),
-        (".csv", answer.csv()?),
-        ("-steps.csv", answer.steps_csv()?),
         (".md", answer.markdown().into_bytes()),
     ];
+    if !answer.results.is_empty() {
+        files.push((".csv", answer.csv()?));
+        files.push(("-steps.csv", answer.steps_csv()?));
+    }
+    if !answer.bounds.is_empty() {
+        files.push(("-bounds.csv", answer.bounds_csv()?));
+    }
+    if let Some((sheet, curves)) = curve_sheet(&runs, &answer) {
+        files.push(("-curves.csv", curves_csv(&curves)?));
+        sheet.save(&store.path(&format!("{name}-curves")))?;
+    }
     for (end, contents) in files {
         let path = store.write(&format!("{name}{end}"), &contents)?;
         talk(&format!("note: {} written", path.display()));
     }
-    sheet(&runs, &answer).save(&store.path(&name))?;
+    if let Some(sheet) = bound_sheet(&answer) {
+        sheet.save(&store.path(&format!("{name}-bounds")))?;
+    }
+    if !answer.results.is_empty() {
+        sheet(&runs, &answer).save(&store.path(&name))?;
+    }
     tell(program.json, || answer.json(), || answer.text())?;
     match &answer.stopped {
         None => Ok(()),
         Some(why) => Err(Failure::Output(format!(
-            "not all errors are as small as asked for: {why}; the runs are kept, so that the same command with a \
+            "not all errors or bounds are as asked for: {why}; the runs are kept, so that the same command with a \
              higher limit goes on"
         ))),
     }
 }
 
+/// An error if the errors of some rows are larger than asked for, with the reasons.
+pub fn all_reached(answers: &Answers) -> Result<(), Failure> {
+    match answers.missed() {
+        none if none.is_empty() => Ok(()),
+        missed => Err(Failure::Output(format!(
+            "not all errors are as small as asked for:\n  {}",
+            missed.join("\n  ")
+        ))),
+    }
+}
+
 /// Prints what is expected.
-fn plan(forecast: Option<&Forecast>, as_json: bool, folder: &Path) -> Result<(), Failure> {
-    let folder = folder.display();
+fn plan(
+    request: &Request,
+    forecast: Option<&Forecast>,
+    options: &EstimateOptions,
+) -> Result<(), Failure> {
+    let folder = options.out.display();
     let unknown = || {
         format!(
             "unknown: {folder} has no runs of this profile that say anything; the first {PILOT} runs at each of two \
              time steps will\n"
         )
     };
-    tell(
-        as_json,
-        || json!({ "expected": forecast }),
-        || forecast.map_or_else(unknown, Forecast::text),
-    )
+    let bounds = || {
+        request
+            .bounds
+            .iter()
+            .map(|bound| (bound, request.runs_for(bound)))
+    };
+    let text = || {
+        let errors = match request.wanted.is_empty() {
+            true => String::new(),
+            false => forecast.map_or_else(unknown, Forecast::text),
+        };
+        let lines = bounds().map(|(bound, runs)| format!("bound on {}: {runs} runs\n", bound.name));
+        errors + &lines.collect::<String>()
+    };
+    let json = || {
+        let bounds = bounds().map(|(bound, runs)| json!({ "result": bound.name, "runs": runs }));
+        json!({ "expected": forecast, "bounds": bounds.collect::<Vec<_>>() })
+    };
+    tell(options.scene.program.json, json, text)
 }

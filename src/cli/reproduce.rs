@@ -3,11 +3,17 @@
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
+use super::arguments::ErrorOptions;
+use super::estimate::all_reached;
 use super::failure::Failure;
 use super::terminal::say;
 use super::update::CaseOptions;
 use super::watch::Watch;
-use crate::lab::reproduce::{PRODUCTS, Product, reproduce};
+use crate::lab::estimate::Questions;
+use crate::lab::machine::main_memory;
+use crate::lab::reproduce::{PRODUCTS, Product, estimated, reproduce};
+use crate::lab::sweep::Study;
+use crate::runs::store::Store;
 
 #[derive(Args)]
 pub struct ReproduceOptions {
@@ -15,8 +21,15 @@ pub struct ReproduceOptions {
     #[arg(required = true, value_parser = PossibleValuesParser::new(names()))]
     pub what: Vec<String>,
     /// Number of seeds per row of a table: 1, 2, …
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(
+        long,
+        default_value_t = 5,
+        conflicts_with = "asked",
+        value_parser = clap::value_parser!(u64).range(1..=1000)
+    )]
     pub seeds: u64,
+    #[command(flatten)]
+    pub error: ErrorOptions,
     #[command(flatten)]
     pub cases: CaseOptions,
 }
@@ -49,6 +62,9 @@ pub fn about() -> String {
 }
 
 pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
+    if options.error.is_given() {
+        return estimate(options);
+    }
     let wanted = |product: &&Product| {
         let named = options.what.iter().any(|name| name == product.name);
         named || product.in_all && options.what.iter().any(|name| name == ALL)
@@ -60,4 +76,30 @@ pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
     let said = texts.iter().try_for_each(say);
     options.cases.document.put(names.into_iter().zip(&texts))?;
     said
+}
+
+/// Table 1 with the errors asked for.
+fn estimate(options: &ReproduceOptions) -> Result<(), Failure> {
+    /// The name of the table in documents and files.
+    const TABLE: &str = "table1-estimate";
+    if options.what != ["table1"] || options.error.errors.is_empty() {
+        let reason = "--error needs rows that have the same results; give it with table1 alone";
+        return Err(Failure::Input(reason.to_owned()));
+    }
+    options.cases.check(&[TABLE])?;
+    let study = Study::built_in("table1", None, main_memory())?;
+    let questions = Questions::new(&study, &options.error.request())?;
+    let store = Store::open(&options.cases.out)?;
+    let answers = questions.answer(&store, &Watch::new())?;
+    let text = estimated(&answers)?;
+    answers.write(&store)?;
+    let costs = answers.costs();
+    store.write(
+        &format!("{TABLE}.md"),
+        format!("{text}\n{costs}").as_bytes(),
+    )?;
+    let said = say(format!("{text}\n{costs}"));
+    options.cases.document.put([(TABLE, &text)])?;
+    said?;
+    all_reached(&answers)
 }

@@ -6,6 +6,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::arguments::{ErrorOptions, PrintOptions, use_threads};
+use super::estimate::all_reached;
 use super::failure::Failure;
 use super::terminal::{talk, tell};
 use super::watch::Watch;
@@ -86,7 +87,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let folder = options.out.clone();
     let folder = folder.unwrap_or_else(|| PathBuf::from(&study.name));
     let store = Store::at(&folder);
-    if !options.error.errors.is_empty() {
+    if options.error.is_given() {
         return estimate(&study, &folder, options);
     }
     if options.list {
@@ -120,8 +121,8 @@ fn estimate(study: &Study, folder: &Path, options: &SweepOptions) -> Result<(), 
     let alone = options.shard.is_none() && !options.merge && !options.list;
     if !alone || !options.draw.is_empty() || !options.over.is_empty() {
         return Err(Failure::Input(
-            "--error: the number of runs depends on their results; give it without --shard, --merge, --list, --draw \
-             and --over (several processes may run the same command with the same --out)"
+            "--error and --bound: the number of runs depends on their results; give them without --shard, --merge, \
+             --list, --draw and --over (several processes may run the same command with the same --out)"
                 .to_owned(),
         ));
     }
@@ -134,24 +135,13 @@ fn estimate(study: &Study, folder: &Path, options: &SweepOptions) -> Result<(), 
     outputs.check()?;
     let store = Store::open(folder)?;
     let answers = questions.answer(&store, &Watch::new())?;
-    let file = |end: &str| format!("{}-estimate.{end}", study.name);
-    store.write(&file("json"), format!("{:#}\n", answers.json()).as_bytes())?;
-    store.write(&file("csv"), &answers.csv()?)?;
-    answers
-        .sheet()
-        .save(&store.path(&format!("{}-estimate", study.name)))?;
+    let table = answers.write(&store)?;
     talk(&format!(
         "note: {} and other files written",
-        store.path(&file("csv")).display()
+        table.display()
     ));
     tell(options.json, || answers.json(), || answers.text())?;
-    match answers.missed() {
-        none if none.is_empty() => Ok(()),
-        missed => Err(Failure::Output(format!(
-            "not all errors are as small as asked for:\n  {}",
-            missed.join("\n  ")
-        ))),
-    }
+    all_reached(&answers)
 }
 
 /// The files that the study reads.
@@ -170,7 +160,7 @@ fn inputs(study: &Study, options: &SweepOptions, may_replace: bool) -> Outputs {
 /// existing files with the results' names are replaced only with --force.
 fn check_outputs(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Failure> {
     let mut outputs = inputs(study, options, store.is_begun());
-    for file in study.files() {
+    for file in study.files().into_iter().chain(study.curve_files()) {
         // Another process may start the same study at the same time, so do not create trial files.
         outputs.writes("--out", &store.folder().join(file), Manner::Beside);
     }

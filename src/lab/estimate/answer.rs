@@ -3,14 +3,18 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::bounds::Bounded;
+use super::costs::{Cost, OfPreset, Timed};
 use super::limit::Limit;
 use super::run::Runs;
 use super::series::Reached;
+use super::validated::Validated;
 use super::wanted::Wanted;
 use crate::analysis::statistics::{MeanStd, Share};
 use crate::engine::clock::PAPER_TIME_STEP;
 use crate::runs::drive::End;
 use crate::runs::identity::ENGINE;
+use crate::scenario::Preset;
 
 /// What ± means, in one sentence for all reports.
 pub const ABOUT: &str = "± is the error from chance (seeds) and from the time step. It is not the error of the model: \
@@ -36,8 +40,11 @@ pub struct Row {
     pub steps: Vec<AtStep>,
     /// The number of runs without a value.
     pub missing: usize,
-    /// What the default settings would give.
-    pub default: OfDefault,
+    /// What the default settings would give: the preset `paper`.
+    pub default: OfPreset,
+    /// What each preset would give, if its runs were timed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub presets: Vec<OfPreset>,
     /// What the means at other steps are expected to be.
     #[serde(skip)]
     pub limit: Limit,
@@ -60,19 +67,6 @@ pub struct AtStep {
     pub values: Vec<Option<f64>>,
 }
 
-/// What the default settings would give: the paper's step.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct OfDefault {
-    /// The error of the step in the mean.
-    pub error_of_step: f64,
-    /// Half the width of the interval that the chance of a single run gives.
-    pub chance: f64,
-    /// The number of runs for the same error; `None` if the error of the step alone is larger.
-    pub runs: Option<f64>,
-    /// The time of a run on one core, seconds.
-    pub secs: f64,
-}
-
 /// The answer.
 #[derive(Debug, Clone, Serialize)]
 pub struct Answer {
@@ -88,10 +82,19 @@ pub struct Answer {
     pub first_seed: u64,
     /// The wanted results.
     pub results: Vec<Row>,
+    /// The wanted bounds.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bounds: Vec<Bounded>,
     /// The number of runs, and how they ended.
     pub runs: Counts,
     /// The computing time of all runs, seconds on one core.
     pub secs: f64,
+    /// What the errors of all results would cost with each preset, if its runs were timed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub costs: Vec<Cost>,
+    /// What is known of the error of the model; empty if it was not looked up.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub validation: Vec<Validated>,
     /// Why no more runs were made; `None` if all errors are as small as asked for.
     pub stopped: Option<String>,
 }
@@ -127,9 +130,16 @@ impl Answer {
     /// The answer of some runs.
     pub fn of(runs: &Runs) -> Self {
         let question = runs.question;
-        let results = runs.levels.iter().flat_map(|level| &level.results);
+        let results = runs.all_results();
         let finished = || results.clone().flatten();
         let wanted = question.request.wanted.iter().enumerate();
+        let rows: Vec<Row> = wanted
+            .filter_map(|(k, wanted)| Row::of(runs, k, wanted))
+            .collect();
+        let of_presets = || rows.iter().flat_map(|row| &row.presets);
+        let costs = runs.timed.iter();
+        let costs = costs.map(|&timed| Cost::of_all(of_presets(), timed));
+        let costs = costs.collect();
         let [scenario, profile] = question.title.clone();
         Self {
             scenario,
@@ -137,8 +147,12 @@ impl Answer {
             settings: question.settings.clone(),
             confidence: question.request.confidence,
             first_seed: question.first_seed,
-            results: wanted
-                .filter_map(|(k, wanted)| Row::of(runs, k, wanted))
+            results: rows,
+            bounds: question
+                .request
+                .bounds
+                .iter()
+                .map(|bound| runs.bounded(bound))
                 .collect(),
             runs: Counts {
                 all: results.clone().count(),
@@ -149,6 +163,8 @@ impl Answer {
                     .count(),
             },
             secs: runs.measured_secs(),
+            costs,
+            validation: Vec::new(),
             stopped: runs.stopped.clone(),
         }
     }
@@ -178,10 +194,13 @@ impl Row {
                 values: values.clone(),
             })
         });
-        let error_of_step = limit.error_at(PAPER_TIME_STEP);
-        let chance = means.width(confidence) * means.variance.sqrt();
-        let room = reached.error.powi(2) - error_of_step.powi(2);
-        let needed = (room > 0.0).then(|| (chance * chance / room).max(1.0));
+        let of = |timed| OfPreset::of(timed, &means, &limit, (reached, confidence));
+        let default = Timed {
+            preset: Preset::Paper,
+            step: PAPER_TIME_STEP,
+            secs: secs_at(runs, PAPER_TIME_STEP),
+        };
+        let presets: Vec<OfPreset> = runs.timed.iter().copied().map(of).collect();
         let missing = series
             .values
             .iter()
@@ -197,12 +216,8 @@ impl Row {
             limit: limit.clone(),
             steps: steps.collect(),
             missing: missing.count(),
-            default: OfDefault {
-                error_of_step,
-                chance,
-                runs: needed,
-                secs: secs_at(runs, PAPER_TIME_STEP),
-            },
+            default: presets.first().copied().unwrap_or_else(|| of(default)),
+            presets,
         })
     }
 }

@@ -11,6 +11,9 @@ use crate::output::table::{Table, as_precise};
 /// What is read of an answer.
 #[derive(Deserialize)]
 struct Kept {
+    scenario: String,
+    profile: String,
+    settings: Vec<String>,
     confidence: f64,
     first_seed: u64,
     results: Vec<Row>,
@@ -54,6 +57,8 @@ pub struct Change {
 /// Two answers compared.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Compared {
+    /// What A and B are: scenario, profile and settings.
+    pub titles: [String; 2],
     /// The probability of the intervals.
     pub confidence: f64,
     /// The results that both have.
@@ -93,10 +98,20 @@ pub fn compared(a: &Value, b: &Value) -> Result<Compared, LabError> {
         names.filter(|name| of(name, other).is_none()).collect()
     };
     Ok(Compared {
+        titles: [&a, &b].map(Kept::title),
         confidence: a.confidence,
         results: results.collect(),
         missing: [only(&a, &b), only(&b, &a)].concat(),
     })
+}
+
+impl Kept {
+    /// Scenario, profile and settings.
+    fn title(&self) -> String {
+        let parts = [&self.profile].into_iter().chain(&self.settings);
+        let parts: Vec<&str> = parts.map(String::as_str).collect();
+        format!("{} ({})", self.scenario, parts.join(", "))
+    }
 }
 
 fn change(a: &Row, b: &Row, confidence: f64, same_seeds: bool) -> Change {
@@ -185,8 +200,9 @@ impl Compared {
             [] => String::new(),
             names => format!("Only one of them has {}.\n", names.join(", ")),
         };
+        let [a, b] = &self.titles;
         format!(
-            "{}{missing}± is the {} % interval of the difference, from chance and time steps.\n",
+            "A: {a}\nB: {b}\n\n{}{missing}± is the {} % interval of the difference, from chance and time steps.\n",
             table.text(),
             100.0 * self.confidence
         )

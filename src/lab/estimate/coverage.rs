@@ -6,11 +6,11 @@
 
 use serde::Serialize;
 
-use super::plan::{Goal, Offer, first_round, further, predicted};
+use super::plan::{Goal, MOST_PREDICTED, Offer, first_round, further, predicted};
 use super::question::{Question, QuestionError};
 use super::run::Runs;
 use super::series::{Means, Series};
-use super::wanted::{Limits, Request, Wanted};
+use super::wanted::{Limits, Request, Sampling, Wanted};
 use crate::analysis::statistics::{MeanStd, shuffled};
 use crate::lab::error::LabError;
 use crate::lab::jobs::each;
@@ -147,11 +147,14 @@ fn question(file: &str, profile: &str, errors: &[&str]) -> Result<Question, LabE
     let wanted: Result<Vec<Wanted>, String> = errors.iter().map(|text| text.parse()).collect();
     let request = Request {
         wanted: wanted.map_err(LabError::Data)?,
+        bounds: Vec::new(),
+        sampling: Sampling::default(),
         confidence: CONFIDENCE,
         limits: Limits {
             runs: usize::MAX,
             secs: None,
         },
+        costs: false,
     };
     let profile = Setting::of("profile", profile.into(), &format!("profile={profile}"));
     Question::new(Source::BuiltIn(file.into()), vec![profile], request, None).map_err(invalid)
@@ -209,7 +212,7 @@ fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, 
         });
         let start = question.start - finest;
         known.is_some_and(|known| {
-            let runs = predicted(&[known], offers, start, CONFIDENCE);
+            let (runs, _) = predicted(&[known], offers, start, (CONFIDENCE, MOST_PREDICTED));
             let ratio = runs.iter().sum::<usize>() as f64 / after.runs as f64;
             (1.0 / FACTOR..=FACTOR).contains(&ratio)
         })

@@ -5,11 +5,11 @@ use std::fmt::Write;
 use rayon::current_num_threads;
 use serde::Serialize;
 
-use super::plan::{Goal, predicted};
+use super::plan::{Goal, MOST_PREDICTED, predicted};
 use super::question::Question;
 use super::run::Runs;
-use super::series::Series;
-use super::wanted::Tolerance;
+use super::series::{Reached, Series};
+use super::wanted::{Request, Tolerance};
 use crate::analysis::round;
 use crate::lab::error::LabError;
 use crate::lab::sweep::number;
@@ -27,15 +27,22 @@ pub struct Forecast {
     pub runs: Vec<(f64, usize)>,
     /// The expected time on one core, seconds.
     pub secs: f64,
+    /// The results whose errors are expected to be larger than asked for with the most runs that are allowed, with
+    /// these errors.
+    pub short: Vec<(String, String)>,
 }
 
 impl Forecast {
     /// From the finished runs in `store`: those of the same scenario and profile, or else of the scenario with the most
-    /// runs of this profile that has all wanted results, if all errors are relative. `None` without such runs.
+    /// runs of this profile that has all wanted results, if all errors are relative. `None` without such runs, and
+    /// if only bounds are asked for.
     ///
     /// # Errors
     /// The scenario has become invalid.
     pub fn of(question: &Question, store: &Store) -> Result<Option<Self>, LabError> {
+        if question.request.wanted.is_empty() {
+            return Ok(None);
+        }
         let [scenario, profile] = &question.title;
         let mut known: Vec<RunResult> = store.all();
         known.retain(|run| run.summary.profile == *profile && run.summary.frames > 0);
@@ -88,7 +95,24 @@ impl Forecast {
         let Some(goals) = goals.collect::<Option<Vec<Goal>>>() else {
             return Ok(None);
         };
-        let counts = predicted(&goals, &offers, question.start, question.request.confidence);
+        let Request {
+            confidence, limits, ..
+        } = question.request;
+        let asked = (confidence, limits.runs.min(MOST_PREDICTED));
+        let (counts, errors) = predicted(&goals, &offers, question.start, asked);
+        let short = wanted.iter().zip(&goals).zip(errors);
+        let short = short.filter_map(|((wanted, goal), error)| {
+            let value = goal.means.reached(confidence).0.value;
+            let reached = Reached {
+                value,
+                error,
+                seeds: 0.0,
+                step: 0.0,
+            };
+            let percent = || reached.percent().unwrap_or_else(|| round::brief(error));
+            (error > wanted.error.of(value)).then(|| (wanted.name.clone(), percent()))
+        });
+        let short = short.collect();
         let start = &offers[question.start];
         let per_step = known.iter().map(|run| run.wall_secs * step(run));
         let per_step = per_step.sum::<f64>() / known.len() as f64 / start.step / start.secs;
@@ -108,6 +132,7 @@ impl Forecast {
             known: known.len(),
             runs: used.collect(),
             secs,
+            short,
         }))
     }
 
@@ -129,6 +154,9 @@ impl Forecast {
                 round::brief(*step)
             )
             .ok();
+        }
+        for (name, error) in &self.short {
+            write!(text, "; with these, {name} reaches ± {error} only").ok();
         }
         text + "\n"
     }

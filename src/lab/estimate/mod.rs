@@ -5,7 +5,9 @@
 //! and that of the time step, from the means at different steps (`limit.rs`). `plan.rs` chooses which runs come next.
 
 mod answer;
+mod bounds;
 mod compared;
+mod costs;
 mod coverage;
 mod coverage_report;
 mod forecast;
@@ -14,20 +16,25 @@ mod pictures;
 mod plan;
 mod question;
 mod report;
+mod row_pictures;
 mod rows;
 mod run;
 mod series;
+mod validated;
 mod wanted;
 
 pub use answer::{ABOUT, Answer, AtStep, Counts, Row};
+pub use bounds::{Bounded, Sample};
 pub use compared::{Change, Compared, compared, is_answer};
+pub use costs::{Cost, OfPreset, Timed};
 pub use coverage::{Coverage, Covered, Pool, coverage};
 pub use forecast::Forecast;
 pub use limit::{Level, Limit};
-pub use pictures::sheet;
+pub use pictures::{bound_sheet, curve_sheet, sheet};
 pub use plan::{Goal, Offer, PILOT, further, predicted};
 pub use question::{Question, QuestionError, Rung};
 pub use rows::{Answers, Questions};
 pub use run::{Look, Runs, run};
 pub use series::{Means, Reached, Series};
-pub use wanted::{Limits, Request, Tolerance, Wanted};
+pub use validated::Validated;
+pub use wanted::{Bound, Limits, Request, Sampling, Tolerance, Wanted};

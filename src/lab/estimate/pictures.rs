@@ -1,15 +1,24 @@
 //! The picture of an estimate: the way to each result.
 
 use super::answer::{Answer, AtStep, Row};
+use super::bounds::Bounded;
+use super::costs::name;
 use super::run::Runs;
+use crate::analysis::round;
+use crate::lab::curves::{BAND, Curve, curves, panel};
 use crate::lab::gallery::{around, band, curve, spanned};
-use crate::output::colors::light;
+use crate::output::colors::{Rgb, light};
 use crate::output::plot::{
     Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style, line_color,
 };
+use crate::runs::case::RunResult;
+use crate::scenario::Preset;
 
 /// The color of a confidence band, as a part of its line's.
 const LIGHT: f64 = 0.25;
+
+/// The size of panels, points.
+const PANEL: [f64; 2] = [190.0, 130.0];
 
 /// Three panels for each result: its mean at each step, with the limit; its error after each round of runs; and the
 /// error over the computing time, beside that of the default step.
@@ -19,8 +28,76 @@ pub fn sheet(runs: &Runs, answer: &Answer) -> Sheet {
         .iter()
         .enumerate()
         .flat_map(|(k, row)| [by_step(row), by_round(runs, k, row), by_time(runs, k, row)]);
+    let title = format!(
+        "{}: {}; {} % intervals from chance and time step",
+        answer.scenario,
+        answer.profile,
+        round::brief(100.0 * answer.confidence)
+    );
+    Sheet::new(&title, 3, PANEL, panels.collect())
+}
+
+/// The mean curves of the runs at the step with most runs; `None` if they measure none. Errors of the step are not part
+/// of their bands.
+pub fn curve_sheet(runs: &Runs, answer: &Answer) -> Option<(Sheet, Vec<(String, Curve)>)> {
+    let level = runs.levels.iter().max_by_key(|level| level.results.len())?;
+    let results: Vec<&RunResult> = level.results.iter().flatten().collect();
+    let all = curves(&results);
+    if all.is_empty() {
+        return None;
+    }
+    let panels = all.iter().filter_map(|curve| {
+        let label = format!("mean of {} runs", curve.runs);
+        let panel = panel(&[(curve, line_color(0), label)])?;
+        Some(panel.with_legend(Corner::LowerRight))
+    });
+    let step = format!("step {} s", round::brief(level.rung.step));
+    let title = format!("{}: {}, {step}; {BAND}", answer.scenario, answer.profile);
+    let sheet = Sheet::new(&title, all.len().min(3), PANEL, panels.collect());
+    Some((
+        sheet,
+        all.into_iter().map(|curve| (step.clone(), curve)).collect(),
+    ))
+}
+
+/// A panel for each bound; `None` without one.
+pub fn bound_sheet(answer: &Answer) -> Option<Sheet> {
+    let panels: Vec<Panel> = answer.bounds.iter().map(of_bound).collect();
     let title = format!("{}: {}", answer.scenario, answer.profile);
-    Sheet::new(&title, 3, [190.0, 130.0], panels.collect())
+    (!panels.is_empty()).then(|| Sheet::new(&title, panels.len().min(3), PANEL, panels))
+}
+
+/// The share of runs up to each value, with the bound.
+fn of_bound(bound: &Bounded) -> Panel {
+    let mut values: Vec<f64> = bound.values.iter().flatten().copied().collect();
+    values.sort_by(f64::total_cmp);
+    let all = bound.values.len().max(1) as f64;
+    let steps = values.iter().enumerate();
+    let steps = steps.flat_map(|(k, &value)| [k, k + 1].map(|count| [value, count as f64 / all]));
+    let ends = spanned(values.iter().copied().chain(bound.value));
+    let mut marks = vec![
+        Mark::line(
+            ends.map(|x| [x, bound.share]),
+            Style::broken(GRAY, 1.0, "share asked for"),
+        ),
+        Mark::line(steps, Style::full(line_color(0), 1.2, "share of runs")),
+    ];
+    marks.extend(bound.value.map(|value| {
+        let line = [0.0, 1.0].map(|y| [value, y]);
+        Mark::line(line, Style::full(BLACK, 1.2, "bound"))
+    }));
+    let x = Axis::linear(&bound.name, ends);
+    let y = Axis::linear("share of runs", [0.0, 1.0]);
+    Panel::new("", x, y, marks).with_legend(Corner::UpperLeft)
+}
+
+/// The color of a preset in pictures of costs.
+pub(super) fn color(preset: Preset) -> Rgb {
+    match preset {
+        Preset::Paper => GRAY,
+        Preset::Fast => line_color(1),
+        Preset::Accurate => line_color(2),
+    }
 }
 
 fn by_step(row: &Row) -> Panel {
@@ -47,10 +124,13 @@ fn by_step(row: &Row) -> Panel {
         band(&upper, &lower, light(color, LIGHT)),
         Mark::line(
             across.map(|x| [x, reached.value]),
-            Style::full(color, 1.2, "estimate"),
+            Style::full(color, 1.2, "estimate, interval"),
         ),
         Mark::line(fit, Style::broken(color, 1.0, "expected means")),
-        Mark::Points(points.collect(), Style::full(BLACK, 2.4, "mean of runs")),
+        Mark::Points(
+            points.collect(),
+            Style::full(BLACK, 2.4, "means ± 2 standard errors"),
+        ),
     ];
     let x = Axis::linear("time step [s]", [-0.03 * coarsest, 1.06 * coarsest]);
     let y = Axis::linear(&row.name, spanned(ends));
@@ -95,28 +175,32 @@ fn by_time(runs: &Runs, k: usize, row: &Row) -> Panel {
     let made = looks.map(|look| [secs(&look.runs), look.reached[k].error]);
     let made: Vec<[f64; 2]> = made.collect();
     // Chance falls with the number of runs, the error of the step stays.
-    let of = row.default;
-    let default = (0..24).map(|power| {
-        let runs = 1.5_f64.powi(power);
-        [
-            runs * of.secs,
-            (of.chance / runs.sqrt()).hypot(of.error_of_step),
-        ]
-    });
     let last = made.last().map_or(1.0, |point| point[0]);
-    let default: Vec<[f64; 2]> = default.filter(|point| point[0] <= 3.0 * last).collect();
+    let presets = match row.presets.as_slice() {
+        [] => std::slice::from_ref(&row.default),
+        presets => presets,
+    };
+    let lines = presets.iter().map(|of| -> Vec<[f64; 2]> {
+        let runs = (0..24).map(|power| 1.5_f64.powi(power));
+        let points = runs.map(|runs| [runs * of.timed.secs, of.error(runs)]);
+        points.filter(|point| point[0] <= 3.0 * last).collect()
+    });
+    let lines: Vec<Vec<[f64; 2]>> = lines.collect();
+    let points = || made.iter().chain(lines.iter().flatten());
     let x = Axis::log(
         "computing time [s]",
-        around(made.iter().chain(&default).map(|point| point[0]), 1.3),
+        around(points().map(|point| point[0]), 1.3),
     );
-    let y = Axis::log(
-        "half width",
-        around(made.iter().chain(&default).map(|point| point[1]), 1.3),
-    );
-    let mut marks = vec![Mark::line(
-        default,
-        Style::broken(GRAY, 1.2, "default step, its error known"),
-    )];
+    let y = Axis::log("half width", around(points().map(|point| point[1]), 1.3));
+    let mut marks: Vec<Mark> = presets
+        .iter()
+        .zip(&lines)
+        .map(|(of, line)| {
+            let label = format!("{}, its error known", name(of.timed.preset));
+            let style = Style::broken(color(of.timed.preset), 1.2, &label);
+            Mark::line(line.iter().copied(), style)
+        })
+        .collect();
     marks.extend(curve(
         made.iter().copied(),
         Style::full(line_color(0), 1.2, "estimate"),

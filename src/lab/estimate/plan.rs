@@ -13,8 +13,8 @@ use super::wanted::Tolerance;
 pub const PILOT: usize = 5;
 /// A plan with at most this number of runs is carried out at once.
 const FEW: usize = 6;
-/// Predictions end at this number of runs.
-const MOST_PREDICTED: usize = 100_000;
+/// Predictions without a limit end at this number of runs.
+pub(super) const MOST_PREDICTED: usize = 100_000;
 
 /// A step on offer.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,18 +104,24 @@ pub fn first_round(offers: usize, start: usize) -> Vec<usize> {
     (0..offers).map(runs).collect()
 }
 
-/// The number of runs at each of `offers` that an estimate is expected to need, from what other runs say of its goals.
-pub fn predicted(known: &[Goal], offers: &[Offer], start: usize, confidence: f64) -> Vec<usize> {
+/// The number of runs at each of `offers` that an estimate is expected to need, from what other runs say of its goals:
+/// at most `most`, or those of the first round. Also the errors that they are expected to give, half widths in the
+/// order of the goals.
+pub fn predicted(
+    known: &[Goal],
+    offers: &[Offer],
+    start: usize,
+    (confidence, most): (f64, usize),
+) -> (Vec<usize>, Vec<f64>) {
     let expected: Vec<Limit> = known
         .iter()
         .map(|goal| Limit::of(&goal.means.levels, goal.means.variance))
         .collect();
     let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
     let mut offers = offers.to_vec();
-    offers.iter_mut().for_each(|offer| offer.runs = 0);
-    offers[start..]
-        .iter_mut()
-        .for_each(|offer| offer.runs = PILOT);
+    let first = first_round(offers.len(), start);
+    let begun = offers.iter_mut().zip(first);
+    begun.for_each(|(offer, runs)| offer.runs = runs);
     loop {
         let counts: Vec<usize> = offers.iter().map(|offer| offer.runs).collect();
         let goals = known.iter().zip(&expected).map(|(goal, expected)| Goal {
@@ -123,14 +129,21 @@ pub fn predicted(known: &[Goal], offers: &[Offer], start: usize, confidence: f64
             tolerance: goal.tolerance,
         });
         let goals: Vec<Goal> = goals.collect();
-        match further(&goals, &offers, confidence) {
-            Some(more) if counts.iter().sum::<usize>() < MOST_PREDICTED => {
-                offers
-                    .iter_mut()
-                    .zip(more)
-                    .for_each(|(offer, more)| offer.runs += more);
-            }
-            _ => return counts,
+        let room = most.saturating_sub(counts.iter().sum());
+        let more = further(&goals, &offers, confidence).filter(|_| room > 0);
+        let Some(more) = more else {
+            let errors = goals
+                .iter()
+                .map(|goal| goal.means.reached(confidence).0.error);
+            return (counts, errors.collect());
+        };
+        let asked = more.iter().sum::<usize>().max(room);
+        let mut left = room;
+        for (offer, more) in offers.iter_mut().zip(more) {
+            // At least one more run in all, and no more than there is room for.
+            let added = (more * room).div_ceil(asked).min(left);
+            offer.runs += added;
+            left -= added;
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use serde_json::{Value, json};
 
+use super::validated::{Kind, kind_of};
 use super::wanted::Request;
-use crate::analysis::stability;
+use crate::analysis::{round, stability};
 use crate::engine::clock::SHORTEST_TIME_STEP;
 use crate::lab::gallery::distinct;
 use crate::runs::case::{Case, Source};
@@ -26,8 +27,10 @@ pub enum QuestionError {
     #[error(transparent)]
     Run(#[from] RunError),
     /// The scenario does not measure a wanted result.
-    #[error("--error {name}: the scenario has no such result; it has {known}{suggestion}")]
+    #[error("{option} {name}: the scenario has no such result; it has {known}{suggestion}")]
     Unknown {
+        /// `--error` or `--bound`.
+        option: &'static str,
         /// The name.
         name: String,
         /// The names of all results.
@@ -36,8 +39,17 @@ pub enum QuestionError {
         suggestion: String,
     },
     /// A result is wanted twice.
-    #[error("--error {0}: given twice; give one error for each result")]
-    Twice(String),
+    #[error("{0} {1}: given twice; give it once for each result")]
+    Twice(&'static str, String),
+    /// There is only one time step.
+    #[error(
+        "the time step of {0} s can be neither halved nor doubled, so its error cannot be found; give a longer \
+         --time-step"
+    )]
+    OneStep(f64),
+    /// This row of a study cannot be asked.
+    #[error("{0}: {1}")]
+    Row(String, Box<QuestionError>),
 }
 
 /// A time step on offer.
@@ -67,6 +79,10 @@ pub struct Question {
     pub rungs: Vec<Rung>,
     /// The number of the step to begin with.
     pub start: usize,
+    /// Whether runs of the same population differ: RVO draws candidates.
+    pub is_behavior_random: bool,
+    /// The results asked for, with the kinds of their measurements; `None` for results of every run.
+    pub(super) kinds: Vec<(String, Option<Kind>)>,
     case: Case,
     memory: Option<u64>,
 }
@@ -109,26 +125,32 @@ impl Question {
         let scenario = case.scenario().map_err(RunError::from)?;
         let [title, profile] = [&scenario.name, &scenario.profile_name].map(String::clone);
         let first_seed = scenario.seed;
-        let notes = scenario.notes.clone();
+        let mut notes = scenario.notes.clone();
         let (rungs, start) = rungs(&scenario);
+        if let [only] = rungs.as_slice() {
+            return Err(QuestionError::OneStep(only.step));
+        }
+        if start + 1 == rungs.len() {
+            let step = rungs[start].step;
+            notes.push(format!(
+                "longer time steps than {} s are not known to be stable here: the first runs have this step and its \
+                 half",
+                round::brief(step)
+            ));
+        }
+        let is_behavior_random = scenario.scene.needs().rvo;
+        let asked = request.wanted.iter().map(|wanted| &wanted.name);
+        let asked = distinct(asked.chain(request.bounds.iter().map(|bound| &bound.name)));
+        let asked = asked.into_iter();
+        let kinds = asked.map(|name| (name.clone(), kind_of(&scenario.measurements, name)));
+        let kinds = kinds.collect();
         let run = Run::new(scenario).map_err(RunError::from)?;
         let names = Summary::of(&run).metrics.into_keys();
         let names = distinct(names.chain(OF_RUNS.map(str::to_owned)));
-        for (k, wanted) in request.wanted.iter().enumerate() {
-            if !names.contains(&wanted.name) {
-                return Err(QuestionError::Unknown {
-                    name: shown(&wanted.name),
-                    known: names.join(", "),
-                    suggestion: suggestion(&wanted.name, names.iter().map(String::as_str)),
-                });
-            }
-            if request.wanted[..k]
-                .iter()
-                .any(|other| other.name == wanted.name)
-            {
-                return Err(QuestionError::Twice(shown(&wanted.name)));
-            }
-        }
+        let wanted = request.wanted.iter().map(|wanted| wanted.name.as_str());
+        check("--error", wanted.collect(), &names)?;
+        let bounds = request.bounds.iter().map(|bound| bound.name.as_str());
+        check("--bound", bounds.collect(), &names)?;
         Ok(Self {
             request,
             names,
@@ -138,6 +160,8 @@ impl Question {
             notes,
             rungs,
             start,
+            is_behavior_random,
+            kinds,
             case,
             memory,
         })
@@ -148,14 +172,40 @@ impl Question {
     /// # Errors
     /// As [`Case::new`].
     pub fn case(&self, rung: Rung, k: usize) -> Result<Case, RunError> {
-        let seed = self.first_seed.wrapping_add(k as u64);
-        let set =
-            |key: &str, value: Value| Setting::of(key, value.clone(), &format!("{key}={value}"));
-        let settings = vec![
-            set("time_step_secs", json!(rung.step)),
-            set("coarse_every", json!(rung.coarse_every)),
-            set("seed", json!(seed)),
-        ];
+        let mut settings = at(rung);
+        settings.push(set("seed", json!(self.seed(k))));
+        self.case.with(settings, &Memory::new(self.memory))
+    }
+
+    /// A run of a population, both counted from 0.
+    ///
+    /// # Errors
+    /// As [`Case::new`].
+    pub fn of_population(
+        &self,
+        rung: Rung,
+        population: usize,
+        repetition: usize,
+    ) -> Result<Case, RunError> {
+        let mut settings = at(rung);
+        settings.push(set("seed", json!(self.seed(population))));
+        settings.push(set("population_seed", json!(self.seed(population))));
+        settings.push(set("behavior_seed", json!(self.seed(repetition))));
+        self.case.with(settings, &Memory::new(self.memory))
+    }
+
+    /// The `k`-th seed.
+    fn seed(&self, k: usize) -> u64 {
+        self.first_seed.wrapping_add(k as u64)
+    }
+
+    /// The run with the `k`-th seed and a preset, at its own step.
+    ///
+    /// # Errors
+    /// As [`Case::new`].
+    pub fn with_preset(&self, preset: Preset, k: usize) -> Result<Case, RunError> {
+        let seed = self.seed(k);
+        let settings = vec![set("preset", json!(preset)), set("seed", json!(seed))];
         self.case.with(settings, &Memory::new(self.memory))
     }
 
@@ -190,6 +240,38 @@ impl Question {
     pub fn memory(&self) -> Option<u64> {
         self.memory
     }
+}
+
+/// Whether the scenario has these results, and each is given once.
+fn check(option: &'static str, given: Vec<&str>, names: &[String]) -> Result<(), QuestionError> {
+    for (k, name) in given.iter().enumerate() {
+        if !names.iter().any(|known| known == name) {
+            return Err(QuestionError::Unknown {
+                option,
+                name: shown(name),
+                known: names.join(", "),
+                suggestion: suggestion(name, names.iter().map(String::as_str)),
+            });
+        }
+        if given[..k].contains(name) {
+            return Err(QuestionError::Twice(option, shown(name)));
+        }
+    }
+    Ok(())
+}
+
+/// The settings of a step.
+fn at(rung: Rung) -> Vec<Setting> {
+    vec![
+        set("time_step_secs", json!(rung.step)),
+        set("coarse_every", json!(rung.coarse_every)),
+    ]
+}
+
+/// A setting of the program's own.
+fn set(key: &str, value: Value) -> Setting {
+    let text = format!("{key}={value}");
+    Setting::of(key, value, &text)
 }
 
 /// The steps on offer, from the finest to the coarsest, and the place of the scenario's own step among them: half of

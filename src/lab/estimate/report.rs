@@ -1,6 +1,8 @@
 //! The answer as text, Markdown and CSV.
 
 use super::answer::{ABOUT, Answer, Row};
+use super::bounds::Bounded;
+use super::costs::name;
 use crate::analysis::round;
 use crate::lab::error::LabError;
 use crate::output::table::{Columns, Table, as_precise};
@@ -30,10 +32,26 @@ impl Answer {
             self.profile,
             round::brief(100.0 * self.confidence),
         );
-        text += &table(&self.results_table());
-        text += "\nMeans at each step (± standard deviation of runs):\n\n";
-        text += &table(&self.steps_table());
+        if !self.results.is_empty() {
+            text += &table(&self.results_table());
+            text += "\nMeans at each step (± standard deviation of runs):\n\n";
+            text += &table(&self.steps_table());
+        }
+        if !self.bounds.is_empty() {
+            let space = if self.results.is_empty() { "" } else { "\n" };
+            text += &format!(
+                "{space}Bounds on single runs, at one time step whose error is not part of them:\n\n"
+            );
+            text += &table(&self.bounds_table());
+            text += "\n";
+            for bound in &self.bounds {
+                text += &bound.sentence();
+            }
+        }
         text += &format!("\n{}\n", self.costs());
+        for validated in &self.validation {
+            text += &validated.text();
+        }
         for (name, share) in self.runs.notable() {
             text += &format!("{} of {} runs {name}: {share}.\n", share.count, share.of);
         }
@@ -66,6 +84,31 @@ impl Answer {
             .column("wanted", |row| row.wanted.as_str())
             .column("reached", Row::yes_or_no)
             .column("order", |row| format!("{:.1}", row.order))
+            .table()
+    }
+
+    fn bounds_table(&self) -> Table {
+        let side = |bound: &Bounded| if bound.is_upper() { "≤" } else { "≥" };
+        Table::of(&self.bounds)
+            .column("result", |bound| bound.name.as_str())
+            .column("runs", |bound| {
+                let inner = round::brief(100.0 * bound.inner());
+                format!("{inner} % {}", side(bound))
+            })
+            .column("bound", |bound| {
+                bound
+                    .value
+                    .map(|value| as_precise(value, 1e-3 * value.abs()))
+            })
+            .column("rank", |bound| {
+                let rank = bound.rank.map_or("–".to_owned(), |rank| rank.to_string());
+                format!("{rank} of {}", bound.runs)
+            })
+            .column("confidence", |bound| {
+                let percent = |holds: f64| format!("{:.1} %", 100.0 * holds);
+                bound.confidence.map(percent)
+            })
+            .column("step [s]", |bound| round::brief(bound.step))
             .table()
     }
 
@@ -104,7 +147,7 @@ impl Answer {
                      show this error, would have been {} and {} s.",
                     row.name,
                     runs.ceil(),
-                    round::brief(runs * default.secs)
+                    round::brief(runs.ceil() * default.timed.secs)
                 ),
                 None => format!(
                     " The default step of 0.02 s has an error of {error} in {}: no number of runs gives ± {}.",
@@ -112,6 +155,20 @@ impl Answer {
                     row.written(row.reached.error)
                 ),
             };
+        }
+        let secs = |secs: Option<f64>| secs.map_or("none".to_owned(), round::brief);
+        let costs = self.costs.iter();
+        let costs =
+            costs.map(|cost| format!("{} {}", name(cost.timed.preset), secs(cost.all_secs)));
+        let costs: Vec<String> = costs.collect();
+        if !costs.is_empty() {
+            text += &format!(
+                " Seconds for the same errors of all results with a preset alone: {}.",
+                costs.join(", ")
+            );
+        }
+        if self.costs.iter().any(|cost| cost.all_secs.is_none()) {
+            text += " None: the error of its step is larger.";
         }
         text
     }
@@ -139,6 +196,26 @@ impl Answer {
         Ok(columns.table().csv()?)
     }
 
+    /// One line per bound.
+    ///
+    /// # Errors
+    /// The table cannot be written.
+    pub fn bounds_csv(&self) -> Result<Vec<u8>, LabError> {
+        let columns = Table::of(&self.bounds)
+            .column("result", |bound| bound.name.as_str())
+            .column("share", |bound| bound.share)
+            .column("bound", |bound| bound.value)
+            .column("rank", |bound| bound.rank)
+            .column("n", |bound| bound.runs)
+            .column("needed", |bound| bound.needed)
+            .column("confidence", |bound| bound.confidence)
+            .column("populations", |bound| bound.populations[0])
+            .column("runs_per_population", |bound| bound.populations[1])
+            .column("step_secs", |bound| bound.step)
+            .column("missing", |bound| bound.missing);
+        Ok(columns.table().csv()?)
+    }
+
     /// One line per result and step.
     ///
     /// # Errors
@@ -159,6 +236,31 @@ fn by_step<'r>(rows: &'r [Step<'r>]) -> Columns<'r, Step<'r>> {
         .column("result", |(row, _)| row.name.as_str())
         .column("step_secs", |(_, at)| at.step)
         .column("runs", |(_, at)| at.runs)
+}
+
+impl Bounded {
+    /// What the bound means.
+    fn sentence(&self) -> String {
+        let [populations, repetitions] = self.populations;
+        let of = match repetitions {
+            1 => format!("{populations} populations with one run each"),
+            _ => format!("{populations} populations with {repetitions} runs each"),
+        };
+        let missing = match self.missing {
+            0 => String::new(),
+            missing => format!(" {missing} runs have no value and count as beyond all others."),
+        };
+        let means = match self.confidence {
+            Some(holds) => format!(
+                "another run is beyond this value with at most {} % probability; this statement is true with {:.1} %",
+                round::brief(100.0 * (1.0 - self.inner())),
+                100.0 * holds
+            ),
+            None => "runs with the same population are not independent, so no probability is given"
+                .to_owned(),
+        };
+        format!("{}: {of}; {means}.{missing}\n", self.name)
+    }
 }
 
 impl Row {

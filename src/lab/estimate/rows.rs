@@ -1,22 +1,25 @@
 //! The rows of a study, each with the errors asked for.
 
+use std::fmt;
+use std::path::PathBuf;
+
 use serde_json::{Map, Value, json};
 
 use super::answer::{ABOUT, Answer, Row};
+use super::bounds::Bounded;
+use super::costs;
 use super::question::{Question, QuestionError};
 use super::run::run;
 use super::wanted::Request;
+use crate::analysis::round;
+use crate::analysis::statistics::{MeanStd, Range};
 use crate::lab::error::LabError;
-use crate::lab::gallery::{spanned, with_legend};
 use crate::lab::sweep::{Cell, Study, plain};
-use crate::output::plot::{Axis, BLACK, Mark, Panel, Point, Print, Sheet, Style};
+use crate::output::plot::Print;
 use crate::output::table::{Columns, Table};
 use crate::runs::identity::ENGINE;
 use crate::runs::job::Listener;
 use crate::runs::store::Store;
-
-/// The most panels in a row.
-const COLUMNS: usize = 3;
 
 /// The questions of a study: one for each combination of its settings.
 pub struct Questions<'a> {
@@ -26,7 +29,7 @@ pub struct Questions<'a> {
 
 /// The answers to them.
 pub struct Answers<'a> {
-    study: &'a Study,
+    pub(super) study: &'a Study,
     /// The first cell of each combination, with its answer.
     pub rows: Vec<(&'a Cell, Answer)>,
 }
@@ -36,15 +39,16 @@ impl<'a> Questions<'a> {
     /// the first one of each row.
     ///
     /// # Errors
-    /// A combination does not have one of the results.
+    /// A combination does not have one of the results; the message names it.
     pub fn new(study: &'a Study, request: &Request) -> Result<Self, QuestionError> {
         let firsts = study
             .cells
             .chunks(study.seeds.max(1))
             .map(|cells| &cells[0]);
         let question = |cell: &'a Cell| {
-            let question = Question::of(&cell.case, Vec::new(), request.clone(), study.memory)?;
-            Ok((cell, question))
+            let question = Question::of(&cell.case, Vec::new(), request.clone(), study.memory);
+            let in_row = |error| QuestionError::Row(cell.to_string(), Box::new(error));
+            Ok((cell, question.map_err(in_row)?))
         };
         Ok(Self {
             study,
@@ -56,8 +60,8 @@ impl<'a> Questions<'a> {
     pub fn files(&self) -> Vec<String> {
         let pictures = Print::of_program().extensions();
         let ends = ["json", "csv"].into_iter().chain(pictures);
-        ends.map(|end| format!("{}-estimate.{end}", self.study.name))
-            .collect()
+        let name = name(self.study);
+        ends.map(|end| format!("{name}.{end}")).collect()
     }
 
     /// Makes the runs of all rows, row by row.
@@ -87,8 +91,22 @@ impl<'a> Questions<'a> {
 type Line<'a> = (&'a Cell, Answer);
 
 impl Answers<'_> {
+    /// Writes `STUDY-estimate.json`, `.csv` and the picture into the store's folder, and returns the path of the table.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn write(&self, store: &Store) -> Result<PathBuf, LabError> {
+        let name = name(self.study);
+        let json = format!("{:#}\n", self.json());
+        store.write(&format!("{name}.json"), json.as_bytes())?;
+        if !self.names().is_empty() {
+            self.sheet().save(&store.path(&name))?;
+        }
+        Ok(store.write(&format!("{name}.csv"), &self.csv()?)?)
+    }
+
     /// The names of the results.
-    fn names(&self) -> Vec<String> {
+    pub fn names(&self) -> Vec<String> {
         let first = self.rows.first();
         let results = first.map(|(_, answer)| answer.results.as_slice());
         let results = results.unwrap_or_default().iter();
@@ -127,7 +145,51 @@ impl Answers<'_> {
                 .column("reached", |(_, answer)| answer.results[k].yes_or_no())
                 .column("n", |(_, answer)| runs(&answer.results[k]));
         }
-        format!("{ABOUT}\n\n{}", columns.table().text())
+        for (k, name) in self.bound_names().into_iter().enumerate() {
+            columns = columns.column(&name, |(_, answer)| {
+                answer.bounds[k].value.map(round::brief)
+            });
+        }
+        format!("{ABOUT}\n\n{}\n{}", columns.table().text(), self.costs())
+    }
+
+    /// What the rows cost, and what each preset would have cost for the same errors: as a table, and in words.
+    pub fn costs(&self) -> String {
+        let Some((_, first)) = self
+            .rows
+            .first()
+            .filter(|(_, first)| !first.costs.is_empty())
+        else {
+            let secs = self.rows.iter().map(|(_, answer)| answer.secs);
+            return format!("{} s of computing on one core.\n", round::brief(secs.sum()));
+        };
+        let mut columns = self
+            .settings()
+            .column("estimate [s]", |(_, answer)| round::brief(answer.secs));
+        let mut words = String::new();
+        for (k, cost) in first.costs.iter().enumerate() {
+            let preset = costs::name(cost.timed.preset);
+            let secs = |answer: &Answer| answer.costs.get(k)?.all_secs;
+            columns = columns.column(&format!("{preset} [s]"), |(_, answer)| {
+                secs(answer).map(round::brief)
+            });
+            let shares = self
+                .rows
+                .iter()
+                .filter_map(|(_, answer)| Some(answer.secs / secs(answer)?));
+            let shares: Vec<f64> = shares.collect();
+            words += &format!(
+                "For the same errors, estimates took {} of the time of {preset} in {} of {} rows",
+                Shares(&shares),
+                shares.len(),
+                self.rows.len()
+            );
+            words += match shares.len() == self.rows.len() {
+                true => ".\n",
+                false => "; in the others the error of its step is larger than theirs.\n",
+            };
+        }
+        format!("{}\n{words}", columns.table().text())
     }
 
     /// As CSV.
@@ -150,7 +212,19 @@ impl Answers<'_> {
                 })
                 .column(&format!("{name}_n"), |(_, answer)| runs(&answer.results[k]));
         }
+        for (k, name) in self.bound_names().into_iter().enumerate() {
+            columns = columns.column(&name, |(_, answer)| answer.bounds[k].value);
+        }
         Ok(columns.table().csv()?)
+    }
+
+    /// The names of bounds, with the share of runs in percent: `time_secs_95_percent`.
+    fn bound_names(&self) -> Vec<String> {
+        let first = self.rows.first();
+        let bounds = first.map(|(_, answer)| answer.bounds.as_slice());
+        let bounds = bounds.unwrap_or_default().iter();
+        let name = |of: &Bounded| format!("{}_{}_percent", of.name, round::brief(100.0 * of.share));
+        bounds.map(name).collect()
     }
 
     fn settings(&self) -> Columns<'_, Line<'_>> {
@@ -162,40 +236,26 @@ impl Answers<'_> {
         }
         columns
     }
+}
 
-    /// A panel for each result, with an error bar for each row.
-    pub fn sheet(&self) -> Sheet {
-        let axes = &self.study.axes;
-        let label = |cell: &Cell| {
-            let values = axes.iter().filter_map(|axis| cell.value(axis)).map(plain);
-            values.collect::<Vec<_>>().join(", ")
+/// Shares of times, in words.
+struct Shares<'a>(&'a [f64]);
+
+impl fmt::Display for Shares<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Some(mean) = MeanStd::of(self.0) else {
+            return f.write_str("no share");
         };
-        let labels: Vec<String> = self.rows.iter().map(|(cell, _)| label(cell)).collect();
-        let panels = self.names().into_iter().enumerate().map(|(k, name)| {
-            let points = self
-                .rows
-                .iter()
-                .enumerate()
-                .map(|(place, (_, answer))| Point {
-                    x: place as f64 + 0.5,
-                    y: answer.results[k].reached.value,
-                    error: answer.results[k].reached.error,
-                });
-            let points: Vec<Point> = points.collect();
-            let ends = points.iter().flat_map(|p| [p.y - p.error, p.y + p.error]);
-            let x = Axis::names(&axes.join(", "), labels.clone());
-            let y = Axis::linear(&name, spanned(ends));
-            let marks = vec![Mark::Points(points, Style::full(BLACK, 2.4, ""))];
-            Panel::new("", x, y, marks)
-        });
-        let panels = with_legend(panels.collect(), COLUMNS);
-        Sheet::new(
-            &self.study.name,
-            COLUMNS.min(panels.len().max(1)),
-            [200.0, 130.0],
-            panels,
-        )
+        let range = Range::of(self.0);
+        let [mean, low, high] =
+            [mean.mean, range.minimum, range.maximum].map(|x| format!("{x:.2}"));
+        write!(f, "{mean} on average ({low} to {high})")
     }
+}
+
+/// The name of the files with the answers, without an extension.
+fn name(study: &Study) -> String {
+    format!("{}-estimate", study.name)
 }
 
 /// The number of runs with a value.

@@ -4,6 +4,8 @@ use std::time::Instant;
 
 use rayon::current_num_threads;
 
+use super::bounds::Sample;
+use super::costs::Timed;
 use super::plan::{Goal, Offer, first_round, further};
 use super::question::{Question, Rung};
 use super::series::{Reached, Series};
@@ -45,6 +47,10 @@ pub struct Runs<'a> {
     pub levels: Vec<StepRuns>,
     /// The state after each round.
     pub looks: Vec<Look>,
+    /// The runs of bounds, if these are not those at a step on offer.
+    pub sample: Option<Sample>,
+    /// Runs with each preset, if they were asked for.
+    pub timed: Vec<Timed>,
     /// Why no more runs were made, if an error is larger than asked for.
     pub stopped: Option<String>,
 }
@@ -61,25 +67,18 @@ pub fn run<'a>(
 ) -> Result<Runs<'a>, LabError> {
     let begin = Instant::now();
     let mut runs = Runs::none(question)?;
-    let mut wanted = first_round(runs.levels.len(), question.start);
-    loop {
-        let left = runs.cut(&mut wanted, begin.elapsed().as_secs_f64());
-        runs.make(&wanted, store, listener)?;
-        runs.look()?;
-        listener.notes(&runs.progress());
-        let Some(further) = further(&runs.goals(), &runs.offers(), question.request.confidence)
-        else {
-            return Ok(runs);
-        };
-        if let Some(limit) = left {
-            runs.stopped = Some(limit);
-            return Ok(runs);
-        }
-        wanted
-            .iter_mut()
-            .zip(further)
-            .for_each(|(all, more)| *all += more);
+    let elapsed = || begin.elapsed().as_secs_f64();
+    // First the bounds: their number of runs is fixed, and these runs count for the errors, too.
+    if !question.request.bounds.is_empty() {
+        runs.make_for_bounds(elapsed(), store, listener)?;
     }
+    if !question.request.wanted.is_empty() {
+        runs.make_for_errors(&elapsed, store, listener)?;
+    }
+    if question.request.costs {
+        runs.timed = Timed::of_presets(question, store, listener)?;
+    }
+    Ok(runs)
 }
 
 impl<'a> Runs<'a> {
@@ -98,12 +97,44 @@ impl<'a> Runs<'a> {
             question,
             levels: levels?,
             looks: Vec::new(),
+            sample: None,
+            timed: Vec::new(),
             stopped: None,
         })
     }
 
+    /// Makes runs round by round, until all errors are as small as asked for.
+    fn make_for_errors(
+        &mut self,
+        elapsed: &dyn Fn() -> f64,
+        store: &Store,
+        listener: &dyn Listener,
+    ) -> Result<(), LabError> {
+        let first = first_round(self.levels.len(), self.question.start);
+        let made = self.levels.iter().map(|level| level.results.len());
+        let mut wanted: Vec<usize> = first.into_iter().zip(made).map(|(a, b)| a.max(b)).collect();
+        loop {
+            let limit = self.cut(&mut wanted, elapsed());
+            self.make(&wanted, store, listener)?;
+            self.look()?;
+            listener.notes(&self.progress());
+            let confidence = self.question.request.confidence;
+            let Some(more) = further(&self.goals(), &self.offers(), confidence) else {
+                return Ok(());
+            };
+            if limit.is_some() {
+                self.stopped = limit;
+                return Ok(());
+            }
+            wanted
+                .iter_mut()
+                .zip(more)
+                .for_each(|(all, more)| *all += more);
+        }
+    }
+
     /// Reduces the numbers of runs to what the limits allow. Returns the limit that is then reached, if one is.
-    fn cut(&self, wanted: &mut [usize], elapsed: f64) -> Option<String> {
+    pub(super) fn cut(&self, wanted: &mut [usize], elapsed: f64) -> Option<String> {
         let limits = self.question.request.limits;
         let done: Vec<usize> = self
             .levels
@@ -127,7 +158,10 @@ impl<'a> Runs<'a> {
                 left -= added;
             }
         };
-        let free = limits.runs.saturating_sub(done.iter().sum());
+        let sampled = self.sample.as_ref().map_or(0, |of| of.results.len());
+        let free = limits
+            .runs
+            .saturating_sub(done.iter().sum::<usize>() + sampled);
         let asked = more(wanted);
         let mut reached = None;
         if asked > free {
@@ -161,9 +195,15 @@ impl<'a> Runs<'a> {
         if expected > 0.0 { wall / expected } else { 1.0 }
     }
 
+    /// The results of all runs, without those that time presets.
+    pub fn all_results(&self) -> impl Iterator<Item = &Result<RunResult, String>> + Clone {
+        let levels = self.levels.iter().flat_map(|level| &level.results);
+        levels.chain(self.sample.iter().flat_map(|sample| &sample.results))
+    }
+
     /// The time of all runs, seconds on one core.
     pub fn measured_secs(&self) -> f64 {
-        let results = self.levels.iter().flat_map(|level| &level.results);
+        let results = self.all_results();
         results.flatten().map(|result| result.wall_secs).sum()
     }
 
@@ -179,27 +219,43 @@ impl<'a> Runs<'a> {
         let places = places
             .flat_map(|(k, (level, &all))| (level.results.len()..all).map(move |seed| (k, seed)));
         let places: Vec<(usize, usize)> = places.collect();
-        let cases = each(places.len(), |index| {
+        let run = |index: usize| {
             let (k, seed) = places[index];
-            question.case(question.rungs[k], seed)
-        })?;
-        let cases: Result<Vec<Case>, RunError> = cases.into_iter().collect();
-        let cases = cases.map_err(|error| failed(question, error))?;
-        let jobs = cases.iter().zip(&places).map(|(case, &(k, _))| {
+            let case = question.case(question.rungs[k], seed)?;
             let step = question.rungs[k].step;
-            case.job(format!("step {step:.4} s, seed {}", case.seed))
-        });
+            let name = format!("step {step:.4} s, seed {}", case.seed);
+            Ok((case, name))
+        };
+        let results = self.results_of(places.len(), &run, store, listener)?;
+        for (result, (k, _)) in results.into_iter().zip(places) {
+            self.levels[k].results.push(result);
+        }
+        Ok(())
+    }
+
+    /// The results of runs, each with its name, in order; the error message of runs that failed.
+    pub(super) fn results_of(
+        &self,
+        count: usize,
+        run: &(dyn Fn(usize) -> Result<(Case, String), RunError> + Sync),
+        store: &Store,
+        listener: &dyn Listener,
+    ) -> Result<Vec<Result<RunResult, String>>, LabError> {
+        let question = self.question;
+        let cases: Result<Vec<(Case, String)>, RunError> = each(count, run)?.into_iter().collect();
+        let cases = cases.map_err(|error| failed(question, error))?;
+        let jobs = cases.iter().map(|(case, name)| case.job(name.clone()));
         let jobs: Vec<Job> = jobs.collect();
         job::run(&jobs, store, question.memory(), listener)?;
-        for (case, (k, _)) in cases.iter().zip(places) {
+        let result = |(case, _): &(Case, String)| {
             let failure = || {
                 let failure = store.failure(&case.key);
                 failure.map_or("no result".to_owned(), |failure| failure.message)
             };
             let result = store.result(&case.key).unwrap_or_default();
-            self.levels[k].results.push(result.ok_or_else(failure));
-        }
-        Ok(())
+            result.ok_or_else(failure)
+        };
+        Ok(cases.iter().map(result).collect())
     }
 
     /// The values of the wanted result with this number.

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::analysis::statistics::draws_above;
 use crate::scenario::quote::shown;
 
 /// A result, and the error that it may have.
@@ -69,6 +70,70 @@ impl FromStr for Wanted {
     }
 }
 
+/// A result, and the share of runs that shall be on one side of a bound.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bound {
+    /// The name of the measurement.
+    pub name: String,
+    /// The share of runs: from 0.5 on they are at most the bound; below, this share is at most and the others are at
+    /// least the bound.
+    pub share: f64,
+}
+
+impl Bound {
+    /// Whether the bound is above most runs.
+    pub fn is_upper(&self) -> bool {
+        self.share >= 0.5
+    }
+
+    /// The share of runs on the inner side of the bound.
+    pub fn inner(&self) -> f64 {
+        self.share.max(1.0 - self.share)
+    }
+
+    /// The number of runs that such a bound needs at least, with this probability that it holds.
+    pub fn runs(&self, confidence: f64) -> usize {
+        draws_above(self.inner(), confidence)
+    }
+}
+
+impl FromStr for Bound {
+    type Err = String;
+
+    /// Reads `NAME=95%`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let form = || "not a result with a share of runs, such as time_secs=95%";
+        let (name, share) = text.split_once('=').ok_or_else(form)?;
+        let number = share.trim().strip_suffix('%').ok_or_else(form)?;
+        let percent: f64 = number.trim().parse().map_err(|_| form())?;
+        if !(0.01..=99.99).contains(&percent) {
+            let share = shown(share.trim());
+            return Err(format!(
+                "the share {share} must be between 0.01 and 99.99 %"
+            ));
+        }
+        Ok(Self {
+            name: name.trim().to_owned(),
+            share: percent / 100.0,
+        })
+    }
+}
+
+/// The runs that a bound is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sampling {
+    /// As many seeds as the bound needs.
+    #[default]
+    Seeds,
+    /// 50 runs as in IMO's guidelines on evacuation analysis (MSC.1/Circ.1238, annex 2; MSC.1/Circ.1533, annex 3,
+    /// appendix 3): 10 populations with 5 runs each; or 50 populations with one run each where runs of a population
+    /// would be the same.
+    Imo,
+}
+
+/// The number of runs in [`Sampling::Imo`].
+pub(super) const IMO_RUNS: usize = 50;
+
 /// How far an estimate may go.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
@@ -81,10 +146,26 @@ pub struct Limits {
 /// Everything that an estimate is asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// The results; at least one.
+    /// The results whose means are asked for.
     pub wanted: Vec<Wanted>,
+    /// The results whose bounds are asked for.
+    pub bounds: Vec<Bound>,
+    /// The runs that these are made of.
+    pub sampling: Sampling,
     /// The probability with which an interval shall hold the true value, such as 0.95.
     pub confidence: f64,
     /// Its limits.
     pub limits: Limits,
+    /// Whether to time some runs with each preset.
+    pub costs: bool,
+}
+
+impl Request {
+    /// The number of runs that a bound is made of.
+    pub fn runs_for(&self, bound: &Bound) -> usize {
+        match self.sampling {
+            Sampling::Seeds => bound.runs(self.confidence),
+            Sampling::Imo => IMO_RUNS,
+        }
+    }
 }

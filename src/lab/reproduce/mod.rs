@@ -4,6 +4,7 @@
 //! writes files from their results. Runs that several products share are computed once.
 
 mod comparison;
+mod estimated;
 mod figures;
 mod list;
 mod physics;
@@ -17,6 +18,7 @@ mod table2;
 mod text;
 
 pub use comparison::{Band, Comparison};
+pub use estimated::estimated;
 pub use list::{PRODUCTS, reproduce};
 pub use product::{Needs, Product};
 pub use published::{Published, PublishedRow, PublishedTable, Varied, published};

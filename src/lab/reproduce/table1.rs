@@ -33,18 +33,34 @@ const METRICS: [&str; 3] = ["density_mean_15s", "density_std_15s", "flow_per_s"]
 /// The paper's values cannot be read.
 pub fn rows(results: &Gathered) -> Result<Vec<Row>, LabError> {
     let row = |(paper, ours): (PublishedRow, &Combination)| {
-        let plain = ["sf", "rvo"].contains(&paper.profile.as_str());
-        let (density, flow) = if plain { (0.04, 0.25) } else { (0.015, 0.10) };
-        let bands = [
-            Band::Relative(density),
-            Band::Absolute(0.12),
-            Band::Relative(flow),
-        ];
-        Row::new(paper, ours, METRICS, bands.map(Some))
+        let bands = bands(&paper).map(Some);
+        Row::new(paper, ours, METRICS, bands)
     };
     let ours = results.combinations();
     let paper = published()?.table1.rows.into_iter();
     Ok(paper.zip(&ours).map(row).collect())
+}
+
+/// The bands of density, deviation and flow.
+fn bands(paper: &PublishedRow) -> [Band; 3] {
+    let plain = ["sf", "rvo"].contains(&paper.profile.as_str());
+    let (density, flow) = if plain { (0.04, 0.25) } else { (0.015, 0.10) };
+    [
+        Band::Relative(density),
+        Band::Absolute(0.12),
+        Band::Relative(flow),
+    ]
+}
+
+/// The same in words.
+pub(super) const BANDS: &str = "density 1.5 %, 4 % for SF and RVO; its deviation 0.12 P/m²; flow 10 %, 25 % for SF and \
+                                RVO";
+
+/// The paper's value of one of our measurements, with its band.
+pub(super) fn value_with_band(paper: &PublishedRow, metric: &str) -> Option<(f64, Band)> {
+    let k = METRICS.iter().position(|own| *own == metric)?;
+    let values = [paper.density, paper.deviation, paper.flow];
+    Some((values[k], bands(paper)[k]))
 }
 
 /// The paper's values for a run of the evacuation with the settings of one of the table's rows, by the names of our
@@ -106,7 +122,7 @@ fn verdict(row: &Row) -> String {
 }
 
 /// A parameter and its value in the paper's notation.
-fn varied(Varied { setting, value }: &Varied) -> String {
+pub(super) fn varied(Varied { setting, value }: &Varied) -> String {
     let symbol = match setting.as_str() {
         "agent_stiffness" => "K^ag",
         "rest_density_max" => "ρ⁰max",
@@ -122,8 +138,7 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
     let seeds = results.study.seeds;
     let kept = rows.iter().filter(|row| row.missed().is_empty()).count();
     let markdown = format!(
-        "{}\n{kept} of {} rows are inside their bands (means over {seeds} seed(s)): density 1.5 %, 4 % for SF and RVO; \
-         its deviation 0.12 P/m²; flow 10 %, 25 % for SF and RVO.\n",
+        "{}\n{kept} of {} rows are inside their bands (means over {seeds} seed(s)): {BANDS}.\n",
         markdown(&rows),
         rows.len(),
     );

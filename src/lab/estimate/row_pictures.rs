@@ -1,0 +1,96 @@
+//! The picture of a study's answers.
+
+use super::costs::name;
+use super::pictures::color;
+use super::rows::Answers;
+use crate::lab::gallery::{around, spanned, with_legend};
+use crate::lab::sweep::{Cell, plain};
+use crate::output::plot::{Axis, BLACK, Corner, Mark, Panel, Point, Sheet, Style, line_color};
+use crate::scenario::Preset;
+
+/// The most panels in a row.
+const COLUMNS: usize = 3;
+
+impl Answers<'_> {
+    /// A panel for each result, with an error bar for each row. If runs with presets were timed, another one for each
+    /// result: the errors of all rows over the time that they took, and over the times of each preset.
+    pub fn sheet(&self) -> Sheet {
+        let axes = &self.study.axes;
+        let label = |cell: &Cell| {
+            let values = axes.iter().filter_map(|axis| cell.value(axis)).map(plain);
+            values.collect::<Vec<_>>().join(", ")
+        };
+        let labels: Vec<String> = self.rows.iter().map(|(cell, _)| label(cell)).collect();
+        let names = self.names();
+        let panels = names.iter().enumerate().map(|(k, name)| {
+            let points = self
+                .rows
+                .iter()
+                .enumerate()
+                .map(|(place, (_, answer))| Point {
+                    x: place as f64 + 0.5,
+                    y: answer.results[k].reached.value,
+                    error: answer.results[k].reached.error,
+                });
+            let points: Vec<Point> = points.collect();
+            let ends = points.iter().flat_map(|p| [p.y - p.error, p.y + p.error]);
+            let x = Axis::names(&axes.join(", "), labels.clone());
+            let y = Axis::linear(name, spanned(ends));
+            let marks = vec![Mark::Points(points, Style::full(BLACK, 2.4, ""))];
+            Panel::new("", x, y, marks)
+        });
+        let errors = with_legend(panels.collect(), COLUMNS);
+        let costs = names.iter().enumerate();
+        let costs = costs.filter_map(|(k, name)| self.costs_of(k, name));
+        let panels: Vec<Panel> = errors.into_iter().chain(costs).collect();
+        Sheet::new(
+            &format!(
+                "{}: estimates with intervals from chance and time step",
+                self.study.name
+            ),
+            COLUMNS.min(panels.len().max(1)),
+            [200.0, 130.0],
+            panels,
+        )
+    }
+
+    /// Total errors of a result, in percent, over the times that all results take with these errors.
+    fn costs_of(&self, k: usize, result: &str) -> Option<Panel> {
+        let (_, first) = self.rows.first()?;
+        if first.costs.is_empty() {
+            return None;
+        }
+        let percent = |answer: &super::Answer| {
+            let reached = answer.results[k].reached;
+            100.0 * reached.error / reached.value.abs()
+        };
+        let answers = || self.rows.iter().map(|(_, answer)| answer);
+        let of_preset = |number: usize| -> Vec<[f64; 2]> {
+            let points = answers()
+                .filter_map(|answer| Some([answer.costs.get(number)?.all_secs?, percent(answer)]));
+            points.collect()
+        };
+        let own: Vec<[f64; 2]> = answers().map(|a| [a.secs, percent(a)]).collect();
+        let mut all = own.clone();
+        let mut marks = Vec::new();
+        for (number, cost) in first.costs.iter().enumerate() {
+            let points = of_preset(number);
+            all.extend(&points);
+            let preset: Preset = cost.timed.preset;
+            marks.push(Mark::dots(
+                points,
+                Style::full(color(preset), 2.2, &name(preset)),
+            ));
+        }
+        marks.push(Mark::dots(
+            own,
+            Style::broken(line_color(0), 3.0, "estimate"),
+        ));
+        let x = Axis::log("computing time [s]", around(all.iter().map(|p| p[0]), 1.3));
+        let y = Axis::log(
+            &format!("error of {result} [%]"),
+            around(all.iter().map(|p| p[1]), 1.3),
+        );
+        Some(Panel::new("", x, y, marks).with_legend(Corner::LowerLeft))
+    }
+}

@@ -1,0 +1,229 @@
+//! Estimates that are interrupted, impossible or without chance.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::time::SystemTime;
+
+use serde_json::Value;
+
+use crate::common::program::{json, run_in, stderr};
+
+/// A small evacuation.
+const SMALL: [&str; 6] = [
+    "--set",
+    "grids.0.columns=7",
+    "--set",
+    "grids.0.rows=7",
+    "--set",
+    "measurements.1.flow_of_first.arrivals=30",
+];
+
+fn estimate<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&["estimate", "evacuation"], more, &SMALL[..]].concat()
+}
+
+/// The finished runs of a folder, with the times at which they were written.
+fn finished(out: &Path) -> BTreeMap<String, SystemTime> {
+    let entries = fs::read_dir(out.join("cases")).into_iter().flatten();
+    let files = entries.map(|entry| entry.unwrap());
+    let files = files.map(|file| (file.file_name().into_string().unwrap(), file));
+    files
+        .filter(|(name, _)| name.ends_with(".json"))
+        .map(|(name, file)| (name, file.metadata().unwrap().modified().unwrap()))
+        .collect()
+}
+
+/// All files of an answer without computing times.
+fn tables(out: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(out)
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let tables = entries.filter(|path| path.extension().is_some_and(|end| end == "csv"));
+    let name = |path: &Path| path.file_name().unwrap().to_str().unwrap().to_owned();
+    tables
+        .map(|path| (name(&path), fs::read(&path).unwrap()))
+        .collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_estimate_goes_on_with_its_runs_to_the_same_tables() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    use crate::common::program::{PROGRAM, stop_with};
+
+    let folder = tempfile::tempdir().unwrap();
+    let wanted = ["--error", "flow_per_s=3%", "--threads", "1"];
+    let whole = [&wanted[..], &["--out", "whole"]].concat();
+    let output = run_in(folder.path(), &estimate(&whole));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let expected = tables(&folder.path().join("whole"));
+    assert_eq!(expected.len(), 2);
+    for signal in ["INT", "KILL"] {
+        let out = folder.path().join(signal);
+        let command = estimate(&[&wanted[..], &["--out", signal]].concat());
+        let child = Command::new(PROGRAM)
+            .args(&command)
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let start = Instant::now();
+        while finished(&out).len() < 3 {
+            assert!(start.elapsed() < Duration::from_secs(120), "it hangs");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let stopped = stop_with(child, &format!("kill -{signal} $1"));
+        assert!(!stopped.status.success());
+        let before = finished(&out);
+        assert!(before.len() < finished(&folder.path().join("whole")).len());
+        let output = run_in(folder.path(), &command);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let kept = format!("{} kept from before", before.len());
+        assert!(
+            stderr(&output).contains(&kept) || before.len() > 10,
+            "{}",
+            stderr(&output)
+        );
+        let after = finished(&out);
+        for (name, time) in &before {
+            assert_eq!(after[name], *time, "{name} was computed again");
+        }
+        assert_eq!(tables(&out), expected, "{signal}");
+    }
+}
+
+#[test]
+fn a_plan_for_an_impossible_error_ends_and_says_what_can_be_reached() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = ["--error", "time_secs=0.000000001%", "--plan", "--json"];
+    let before = json(&run_in(folder.path(), &estimate(&plan)));
+    assert!(before["expected"].is_null());
+    run_in(folder.path(), &estimate(&["--error", "time_secs=5%"]));
+    let mut errors = Vec::new();
+    for runs in ["40", "400"] {
+        let more = [&plan[..], &["--most-runs", runs]].concat();
+        let expected = &json(&run_in(folder.path(), &estimate(&more)))["expected"];
+        let made = expected["runs"].as_array().unwrap().iter();
+        let made: u64 = made.map(|of| of[1].as_u64().unwrap()).sum();
+        assert_eq!(made.to_string(), runs);
+        let short = &expected["short"][0];
+        assert_eq!(short[0], "time_secs");
+        let percent = short[1].as_str().unwrap().strip_suffix(" %").unwrap();
+        errors.push(percent.parse::<f64>().unwrap());
+    }
+    assert!(errors[1] < errors[0] && errors[1] > 0.0, "{errors:?}");
+    let said = run_in(folder.path(), &estimate(&plan[..3]));
+    let said = String::from_utf8(said.stdout).unwrap();
+    assert!(said.contains("time_secs reaches ± "), "{said}");
+}
+
+#[test]
+fn a_scene_without_chance_has_the_error_of_the_step_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/verification/speed.json");
+    let scene = scene.to_str().unwrap();
+    let command = [
+        "estimate",
+        scene,
+        "--error",
+        "t100_secs=0.5%",
+        "--set",
+        "population_seed=1",
+        "--json",
+    ];
+    let output = run_in(folder.path(), &command);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let row = &json(&output)["estimate"]["results"][0];
+    assert_eq!(row["is_reached"], true, "{row}");
+    for at in row["steps"].as_array().unwrap() {
+        assert!(at["deviation"].as_f64().unwrap() < 1e-9, "{row}");
+    }
+    assert!(row["seeds"].as_f64().unwrap() < 1e-3 * row["value"].as_f64().unwrap());
+    // 41 m at 1.33 m/s, and less than the relaxation time to start.
+    let value = row["value"].as_f64().unwrap();
+    assert!((30.0..31.5).contains(&value), "{value}");
+}
+
+#[test]
+fn steps_that_cannot_be_doubled_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let midpoint = [
+        "--error",
+        "time_secs=10%",
+        "--set",
+        "integrator=midpoint",
+        "--time-step",
+        "0.02",
+    ];
+    let output = run_in(folder.path(), &estimate(&midpoint));
+    let said = stderr(&output);
+    assert!(
+        said.contains("longer time steps than 0.02 s are not known to be stable"),
+        "{said}"
+    );
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let tiny = [
+        "--error",
+        "time_secs=10%",
+        "--set",
+        "integrator=midpoint",
+        "--time-step",
+        "0.000001",
+    ];
+    let refused = run_in(folder.path(), &estimate(&tiny));
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        stderr(&refused).contains("--time-step"),
+        "{}",
+        stderr(&refused)
+    );
+}
+
+#[test]
+fn a_row_of_a_study_without_the_result_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let study =
+        r#"{"grid": {"scenario": ["evacuation", "crossing"]}, "settings": {"duration_secs": 1}}"#;
+    fs::write(folder.path().join("study.json"), study).unwrap();
+    for option in [["--error", "flow_per_s=5%"], ["--bound", "flow_per_s=95%"]] {
+        let refused = run_in(
+            folder.path(),
+            &[&["sweep", "study.json"][..], &option].concat(),
+        );
+        let said = stderr(&refused);
+        assert_eq!(refused.status.code(), Some(2), "{said}");
+        let words = ["cell 2: scenario=crossing", option[0], "no such result"];
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    }
+}
+
+#[test]
+fn compared_answers_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, viscosity) in [("a.json", "viscosity=0"), ("b.json", "viscosity=5")] {
+        let command = estimate(&["--error", "time_secs=10%", "--set", viscosity, "--json"]);
+        let output = run_in(folder.path(), &command);
+        fs::write(folder.path().join(name), output.stdout).unwrap();
+    }
+    let compared = run_in(folder.path(), &["compare", "a.json", "b.json"]);
+    let said = String::from_utf8(compared.stdout).unwrap();
+    assert!(
+        said.starts_with("A: evacuation (sph, viscosity=0"),
+        "{said}"
+    );
+    assert!(said.contains("\nB: evacuation (sph, viscosity=5"), "{said}");
+    let compared = json(&run_in(
+        folder.path(),
+        &["compare", "a.json", "b.json", "--json"],
+    ));
+    let titles: Vec<&Value> = compared["compared"]["titles"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .collect();
+    assert_eq!(titles.len(), 2);
+}

@@ -1,0 +1,100 @@
+//! `sandbox reproduce table1 --error`: rows of Table 1 as estimates beside the paper's values.
+
+use std::path::Path;
+
+use sandbox::lab::estimate::{Limits, Questions, Request, Sampling};
+use sandbox::lab::reproduce::{estimated, published};
+use sandbox::lab::sweep::Study;
+use sandbox::runs::store::Store;
+
+use crate::common::program::refused;
+
+/// Two rows of the table with fewer people, in another order than the paper's.
+const ROWS: &str = r#"{
+  "scenario": "evacuation", "seeds": 2,
+  "settings": {"grids.0.columns": 7, "grids.0.rows": 7, "measurements.1.flow_of_first.arrivals": 30},
+  "list": [{"profile": "sph", "rest_density_max": 5}, {"profile": "sf", "agent_stiffness": 50}]
+}"#;
+
+fn request(errors: &[&str]) -> Request {
+    Request {
+        wanted: errors.iter().map(|text| text.parse().unwrap()).collect(),
+        bounds: Vec::new(),
+        sampling: Sampling::Seeds,
+        confidence: 0.95,
+        limits: Limits {
+            runs: 200,
+            secs: None,
+        },
+        costs: false,
+    }
+}
+
+#[test]
+fn rows_stand_beside_the_values_of_the_paper_that_they_belong_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path()).unwrap();
+    let study = Study::parse(ROWS, Path::new("table1.json")).unwrap();
+    let questions = Questions::new(&study, &request(&["flow_per_s=10%", "time_secs=10%"])).unwrap();
+    let answers = questions.answer(&store, &()).unwrap();
+    assert!(answers.missed().is_empty());
+    let text = estimated(&answers).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let paper = published().unwrap().table1.rows;
+    for (line, (profile, setting)) in lines[2..]
+        .iter()
+        .zip([("sph", "rest_density_max"), ("sf", "agent_stiffness")])
+    {
+        let value = if profile == "sph" { 5.0 } else { 50.0 };
+        let row = paper.iter().find(|row| {
+            let varied = row.varied.as_ref().unwrap();
+            row.profile == profile && varied.setting == setting && varied.value == value
+        });
+        let flow = format!("{:.2}", row.unwrap().flow);
+        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+        assert_eq!(
+            (cells[0], cells[2]),
+            (profile.to_uppercase().as_str(), flow.as_str()),
+            "{line}"
+        );
+        assert!(
+            cells[3].contains(" ± ") && cells[4].ends_with(" %"),
+            "{line}"
+        );
+        // The paper has no values of times.
+        assert_eq!((cells[6], cells[9]), ("–", "–"), "{line}");
+    }
+    assert!(
+        text.contains("of 2 values are inside their bands"),
+        "{text}"
+    );
+    let table = answers.write(&store).unwrap();
+    assert!(table.ends_with("table1-estimate.csv"));
+    assert!(folder.path().join("table1-estimate.png").exists());
+}
+
+#[test]
+fn only_table_1_has_rows_with_the_same_results() {
+    let words = ["--error needs rows", "table1 alone"];
+    let asked = ["--error", "flow_per_s=5%", "--out", "never"];
+    refused(
+        &[&["reproduce", "table1", "table2"], &asked[..]].concat(),
+        2,
+        &words,
+    );
+    refused(&[&["reproduce", "fig5"], &asked[..]].concat(), 2, &words);
+    refused(
+        &[&["reproduce", "table1", "--seeds", "2"], &asked[..]].concat(),
+        2,
+        &["--seeds"],
+    );
+    let unknown = [
+        "reproduce",
+        "table1",
+        "--error",
+        "density_mean_15=1%",
+        "--out",
+        "never",
+    ];
+    refused(&unknown, 2, &["cell 1", "did you mean", "density_mean_15s"]);
+}
