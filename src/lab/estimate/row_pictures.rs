@@ -40,6 +40,11 @@ impl Answers<'_> {
             Panel::new("", x, y, marks)
         });
         let errors = with_legend(panels.collect(), COLUMNS);
+        // Errors of a result are above its costs.
+        let columns = match self.rows.iter().any(|(_, answer)| !answer.costs.is_empty()) {
+            true => COLUMNS.min(names.len()),
+            false => COLUMNS,
+        };
         let costs = names.iter().enumerate();
         let costs = costs.filter_map(|(k, name)| self.costs_of(k, name));
         let panels: Vec<Panel> = errors.into_iter().chain(costs).collect();
@@ -48,7 +53,7 @@ impl Answers<'_> {
                 "{}: estimates with intervals from chance and time step",
                 self.study.name
             ),
-            COLUMNS.min(panels.len().max(1)),
+            columns.min(panels.len().max(1)),
             [200.0, 130.0],
             panels,
         )
