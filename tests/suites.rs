@@ -7,6 +7,7 @@ use std::path::Path;
 use proptest::prelude::*;
 use proptest::sample::Index;
 use sandbox::lab::suite::{Case, Chosen, Suite};
+use sandbox::scenario::{built_in, calibrated};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -24,6 +25,35 @@ fn people(head: &str, x: f64, unit: f64) -> String {
         }
     }
     text
+}
+
+#[test]
+fn checks_name_the_calibrated_profiles_that_were_fitted_to_them() {
+    let suite = Suite::built_in("validation").unwrap();
+    let mut found = 0;
+    for profile in calibrated::all() {
+        let path = format!("calibration/{}.json", profile.study);
+        let study: Value = serde_json::from_str(built_in(Path::new(&path)).unwrap()).unwrap();
+        let fit = study["fit"].as_array().unwrap();
+        for case in &suite.cases {
+            for check in &case.checks {
+                let is_fitted = fit.iter().any(|scene| {
+                    let begins = |value: &Value| check.name.starts_with(value.as_str().unwrap());
+                    let values = scene["values"].as_array();
+                    scene["case"] == case.name.as_str()
+                        && values.is_none_or(|values| values.iter().any(begins))
+                });
+                let says = check.fitted.iter().any(|name| name == profile.name);
+                assert_eq!(
+                    says, is_fitted,
+                    "{}: {}, {}",
+                    case.name, check.name, profile.name
+                );
+                found += usize::from(says);
+            }
+        }
+    }
+    assert!(found > 30, "{found}");
 }
 
 #[test]

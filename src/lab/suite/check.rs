@@ -90,6 +90,7 @@ impl Check {
             function: None,
             at: None,
             expected: Expected::Any,
+            fitted: Vec::new(),
         }
     }
 

@@ -32,6 +32,8 @@ pub struct Case {
     pub name: String,
     /// A description, in one line.
     pub(super) about: String,
+    /// The kind of scene, under which its values are counted.
+    pub(super) kind: Option<String>,
     /// The source of what is expected.
     pub(super) source: Option<String>,
     /// The picture, if there is one.
@@ -85,6 +87,9 @@ pub struct Check {
     /// The expectation.
     #[serde(default)]
     pub expected: Expected,
+    /// The calibrated profiles that were fitted to it.
+    #[serde(default)]
+    pub fitted: Vec<String>,
 }
 
 /// The expectation for a quantity.

@@ -5,6 +5,7 @@
 //! seeds.
 
 mod check;
+mod counts;
 mod data;
 mod diagrams;
 mod file;

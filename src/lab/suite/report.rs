@@ -205,7 +205,8 @@ impl<'a> Report<'a> {
             .into_iter()
             .filter(|part| !part.is_empty());
         let parts: String = parts.map(|part| format!("\n{part}")).collect();
-        format!("Passed by {counts}. Bold: not as expected.{walls}\n\n{table}{parts}")
+        let by_kind = self.counts();
+        format!("Passed by {counts}. Bold: not as expected.{walls}\n\n{by_kind}{table}{parts}")
     }
 
     /// How many cases and compared values of a profile are as expected.

@@ -11,6 +11,9 @@ use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
 
+/// More than the rounding error of d² in single precision, relative to it.
+const ROUNDING: f64 = 1.0 + 1e-5;
+
 /// The headings between which an agent chooses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fan {
@@ -127,7 +130,11 @@ impl Headings {
             if wall.is_beyond(p, far + radius) || !wall.faces(p) {
                 continue;
             }
-            for (room, &heading) in rooms.iter_mut().zip(&headings) {
+            for (room, &heading) in rooms
+                .iter_mut()
+                .zip(&headings)
+                .filter(|(room, _)| **room > 0.0)
+            {
                 *room = room.min(before_wall(wall, p, radius, heading) * per_time);
             }
         }
@@ -171,6 +178,7 @@ impl Headings {
             far_squared: far * far,
             farther: walkers.speed * splat::<R, S>(simd, 2.0 * self.evasion_time),
             far,
+            widest: far * far,
             squared: [far * far; COUNT],
         };
         add_pairs(simd, bodies, (walkers.start, runs), &mut sum);
@@ -231,6 +239,8 @@ struct Rooms<'a, R: Real, S: Simd> {
     farther: Lanes<R, S>,
     /// The distance to which agents look, meters.
     far: Lanes<R, S>,
+    /// The greatest of the least d² so far, and a little more, m².
+    widest: Lanes<R, S>,
     /// The least d² so far, m².
     squared: [Lanes<R, S>; COUNT],
 }
@@ -259,10 +269,12 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for Rooms<'a, R, S> {
         let e_y = spread::<R, S>(simd, heading_y[j]);
         let against = e_y.mul_add(y, e_x * x).max(zero);
         let oncoming = (against * splat::<R, S>(simd, headway::AGAINST)).min(one);
-        // Most agents of a run are too far away from all eight, and count for none of them.
+        // d² is at least the squared distance, unless agents come toward each other: most agents of a run are farther
+        // away from all eight than the rooms that these have left.
         let sight = oncoming.mul_add(self.farther, self.far);
+        let sight = oncoming.simd_gt(zero).select(sight * sight, self.widest);
         let squared = dy.mul_add(dy, dx * dx);
-        if squared.simd_lt(sight * sight).all_false() {
+        if squared.simd_lt(sight).all_false() {
             return;
         }
         // Where agent j is, and how it moves, along the way and to its left.
@@ -274,6 +286,7 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for Rooms<'a, R, S> {
         let leftward = v_x * y - v_y * x - self.own[1];
         let [time, evasion] = self.times;
         let evasion = evasion * oncoming;
+        let mut widest = zero;
         for (squared, [cosine, sine]) in self.squared.iter_mut().zip(self.turned) {
             let along = left.mul_add(sine, ahead * cosine);
             let across = left * cosine - ahead * sine;
@@ -285,6 +298,8 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for Rooms<'a, R, S> {
             let behind = (one - along * self.per_fade).max(zero);
             let inside = across.mul_add(across, expected * expected);
             *squared = squared.min(self.far_squared.mul_add(aside + behind, inside));
+            widest = widest.max(*squared);
         }
+        self.widest = widest * splat::<R, S>(simd, ROUNDING);
     }
 }

@@ -48,7 +48,7 @@ impl Gap {
 
     /// Narrowings farther away than this do not count, meters.
     pub fn reach(&self) -> f64 {
-        3.0 * self.narrowing_range
+        2.5 * self.narrowing_range
     }
 
     /// The greatest factor.

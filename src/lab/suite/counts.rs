@@ -1,0 +1,87 @@
+//! How many values are as expected: by kind of case, and by whether they were fitted.
+
+use super::check::Judgment;
+use super::report::{Finding, Report};
+use crate::output::table::Table;
+
+/// The values of a kind, by profile.
+struct Line {
+    name: String,
+    /// For each profile, how many values are as expected, and of how many.
+    counts: Vec<[usize; 2]>,
+}
+
+impl Report<'_> {
+    /// How many values of each profile are as expected: a table with a line for each kind of case, then for values that
+    /// the profile was fitted to, and for the others. Empty if no case has a kind.
+    pub(super) fn counts(&self) -> String {
+        let mut kinds: Vec<&str> = Vec::new();
+        for kind in self
+            .findings
+            .iter()
+            .filter_map(|one| one.case.kind.as_deref())
+        {
+            if !kinds.contains(&kind) {
+                kinds.push(kind);
+            }
+        }
+        if kinds.is_empty() {
+            return String::new();
+        }
+        let of_kind = kinds.iter().map(|&kind| {
+            self.line(kind, |finding, _| {
+                finding.case.kind.as_deref() == Some(kind)
+            })
+        });
+        let fitted = |finding: &Finding, check: usize| {
+            let checks = &finding.case.checks;
+            checks
+                .get(check)
+                .is_some_and(|of| of.fitted.contains(&finding.profile))
+        };
+        let last = [
+            self.line("all", |_, _| true),
+            self.line("fitted to it", fitted),
+            self.line("not fitted to it", |finding, check| !fitted(finding, check)),
+        ];
+        let lines: Vec<Line> = of_kind.chain(last).collect();
+        let mut table =
+            Table::of(&lines).column("values within the tolerance", |line| line.name.clone());
+        for (k, profile) in self.profiles.iter().enumerate() {
+            table = table.column(profile, move |line: &Line| {
+                let [inside, all] = line.counts[k];
+                match all {
+                    0 => "–".to_owned(),
+                    _ => format!("{inside} of {all}"),
+                }
+            });
+        }
+        table.table().markdown() + "\n"
+    }
+
+    /// The values of which `counts` is true, given the finding and the number of the check.
+    fn line(&self, name: &str, counts: impl Fn(&Finding, usize) -> bool) -> Line {
+        let of_profile = self.profiles.iter().map(|profile| {
+            let own = self.findings.iter().filter(|one| one.profile == *profile);
+            let checks = own.flat_map(|one| {
+                one.checks
+                    .iter()
+                    .enumerate()
+                    .map(move |(k, check)| (one, k, check))
+            });
+            let checks = checks
+                .filter(|(finding, k, check)| check.expected.is_measured() && counts(finding, *k));
+            let passed: Vec<bool> = checks
+                .map(|(_, _, check)| Judgment::is_passed(check))
+                .collect();
+            [
+                passed.iter().filter(|&&passed| passed).count(),
+                passed.len(),
+            ]
+        });
+        Line {
+            name: name.to_owned(),
+            counts: of_profile.collect(),
+        }
+    }
+}
