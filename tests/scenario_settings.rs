@@ -95,8 +95,8 @@ fn the_keys_of_nested_objects_are_documented() {
         ("periodic", "axis, length, from?"),
         (
             "from",
-            "at_secs?, counted?, fps?, goal?, journey?, mass?, name?, people?, preferred_speed?, premovement_secs?, \
-             profile?, radius?, remove_within?, trajectory?, unit?, until_secs?",
+            "at_secs?, counted?, fps?, goal?, journey?, mass?, motivation?, name?, people?, preferred_speed?, \
+             premovement_secs?, profile?, radius?, remove_within?, trajectory?, unit?, until_secs?",
         ),
         ("stop", "idle_secs?, when_empty?"),
         (

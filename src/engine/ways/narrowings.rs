@@ -29,8 +29,8 @@ pub struct Narrowing {
 }
 
 impl Narrowings {
-    /// The passages of a floor up to `widest` meters wide: the diameters of circles between two walls into which no wall
-    /// reaches.
+    /// The passages of a floor up to `widest` meters wide: the diameters of circles between two walls into which no
+    /// wall reaches.
     pub fn of(mesh: &Mesh, widest: f64) -> Self {
         let ends = |passage: Narrow| {
             let to = match passage.to {

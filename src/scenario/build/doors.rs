@@ -4,7 +4,7 @@ use crate::engine::geometry::Ring;
 use crate::engine::journeys::{Kind, Place};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::ways::Floor;
-use crate::scenario::build::journeys::SHORTEST_LINE;
+use crate::scenario::build::places::SHORTEST_LINE;
 use crate::scenario::error::Problem;
 use crate::scenario::error::quote::{shown, to_centimeters};
 use crate::scenario::floor_plan::Rings;

@@ -18,6 +18,7 @@ pub mod overcrowded;
 pub mod overlaps;
 pub mod people;
 pub mod periodic;
+pub mod places;
 pub mod profiles;
 pub mod reach;
 pub mod slits;

@@ -3,8 +3,8 @@
 use crate::engine::geometry::{Area, Ring, Walls};
 use crate::engine::journeys::{Kind, WaitingArea as Waiting};
 use crate::engine::math::{Vector, direction, perpendicular};
-use crate::scenario::build::journeys::ring;
 use crate::scenario::build::off_floor::OFF;
+use crate::scenario::build::places::ring;
 use crate::scenario::build::spots::{FROM_WALLS, spots};
 use crate::scenario::error::quote::shown;
 use crate::scenario::error::{Problem, Under};

@@ -94,8 +94,8 @@ pub struct File {
     /// s_max (§5.6), m/s: the upper limit on speeds. Results report how often a speed was clamped to it.
     #[schemars(range(max = 100), extend("exclusiveMinimum" = 0, "default" = Scene::default().max_speed))]
     pub max_speed: Option<f64>,
-    /// How much agents hurry, from 0 (calm) to 1 (told to hurry), unless their own key says otherwise: with the walking law
-    /// `headings` they then keep shorter gaps. Evacuations: 1.
+    /// How much agents hurry, from 0 (calm) to 1 (told to hurry), unless their own key says otherwise: with the walking
+    /// law `headings` they then keep shorter gaps. Evacuations: 1.
     #[serde(default)]
     #[schemars(range(min = 0, max = 1))]
     pub motivation: f64,

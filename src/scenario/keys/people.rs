@@ -45,8 +45,8 @@ pub struct Agent {
     /// The agent leaves within this distance of its goal, meters. Default: it stays.
     #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
     pub remove_within: Option<f64>,
-    /// How much it hurries, from 0 (calm) to 1 (told to hurry): with the walking law `headings` it then keeps shorter gaps.
-    /// Default: the scenario's `motivation`.
+    /// How much it hurries, from 0 (calm) to 1 (told to hurry): with the walking law `headings` it then keeps shorter
+    /// gaps. Default: the scenario's `motivation`.
     #[schemars(range(min = 0, max = 1))]
     pub motivation: Option<f64>,
     /// Whether its arrival counts as evacuated.
@@ -70,8 +70,8 @@ pub struct People {
     /// Agents leave within this distance of their goal, meters. Default: they stay.
     #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
     pub remove_within: Option<f64>,
-    /// How much they hurry, from 0 (calm) to 1 (told to hurry): with the walking law `headings` they then keep shorter gaps.
-    /// Default: the scenario's `motivation`.
+    /// How much they hurry, from 0 (calm) to 1 (told to hurry): with the walking law `headings` they then keep shorter
+    /// gaps. Default: the scenario's `motivation`.
     #[schemars(range(min = 0, max = 1))]
     pub motivation: Option<f64>,
     /// Whether arrivals count as evacuated.

@@ -11,8 +11,8 @@
 //! its cost (Eq. 20). Agents decide on s_i^law in coarse frames, like RVO on its velocities, and hold it in between:
 //! people take longer to react. [`Drag`] is a friction. Agents without preferred velocity do not look ahead.
 //!
-//! With [`Headings`], agents also choose a heading ĥ_i beside ê_i, and the acceleration is K^goal/(τ m_i) (s_i^law ĥ_i −
-//! s_i ê_i). They hold the angle between both until the next coarse frame.
+//! With [`Headings`], agents also choose a heading ĥ_i beside ê_i, and the acceleration is
+//! K^goal/(τ m_i) (s_i^law ĥ_i − s_i ê_i). They hold the angle between both until the next coarse frame.
 
 mod density_ahead;
 mod drag;
@@ -114,8 +114,8 @@ impl WalkingLaw {
         length.hypot(view.aside + view.spread * length)
     }
 
-    /// The farthest distance of walls that an agent with this preferred speed, m/s, avoids, meters; `None` for laws that
-    /// do not see walls.
+    /// The farthest distance of walls that an agent with this preferred speed, m/s, avoids, meters; `None` for laws
+    /// that do not see walls.
     pub fn sees_walls(&self, speed: f64) -> Option<f64> {
         self.headings()
             .map(|law| law.sight(speed, law.gap.longest()))

@@ -10,8 +10,8 @@
 //! in m/s, with φ_i the angle of the heading that the agent follows and p [`heading_persistence`]. S_k = max(0, (d_k −
 //! ℓ)/T) is the speed for which there is room: d_k is the distance to the nearest agent in a lane along the heading, or
 //! to the nearest wall, at most R + [`look_ahead`], with R = ℓ + T s_i. The agent takes the heading with the greatest
-//! utility, in coarse frames, and walks along it at the speed of the [`Headway`] law, whose lane is narrower: it looks for
-//! room beside others, and passes them closely.
+//! utility, in coarse frames, and walks along it at the speed of the [`Headway`] law, whose lane is narrower: it looks
+//! for room beside others, and passes them closely.
 //!
 //! [`heading_persistence`]: Headings::heading_persistence
 //! [`look_ahead`]: Headings::look_ahead
@@ -59,8 +59,8 @@ pub struct Headings {
     pub look_ahead: f64,
     /// p (`headings`), m/s per radian: the utility that a turn costs. Higher: agents keep to their headings.
     pub heading_persistence: f64,
-    /// `headings`, seconds: the time after which agents look at the distance to agents that come toward them. Longer: they
-    /// evade earlier.
+    /// `headings`, seconds: the time after which agents look at the distance to agents that come toward them. Longer:
+    /// they evade earlier.
     pub evasion_time: f64,
 }
 
@@ -108,9 +108,11 @@ impl Headings {
     /// The distance in meters at which an agent counts along a heading, for an agent that looks `far` meters ahead:
     /// beyond `far` outside of the lane.
     ///
-    /// d² = max(0, a + t max(0, u) + t_e o max(−2 s_i, min(0, u)))² + c² + far² (max(0, (|c| − w_c)/f) + max(0, 1 − a/f)), with f = w_c/2
-    /// and o = min(1, 4 max(0, −ê_i·ê_j)): between 0 and 1, the more the agents want to walk against each other. `speed`
-    /// is the preferred speed s_i, m/s.
+    /// d² = max(0, a + t max(0, u) + t_e o max(−2 s_i, min(0, u)))² + c²
+    ///      + far² (max(0, (|c| − w_c)/f) + max(0, 1 − a/f)), with f = w_c/2
+    ///
+    /// and o = min(1, 4 max(0, −ê_i·ê_j)): between 0 and 1, the more the agents want to walk against each other.
+    /// `speed` is the preferred speed s_i, m/s.
     pub fn distance(&self, (far, speed): (f64, f64), seen: &Seen) -> f64 {
         let fade = FADE * self.heading_half_width;
         let outside = ((seen.across.abs() - self.heading_half_width) / fade).max(0.0)
@@ -133,8 +135,8 @@ impl Headings {
         std::array::from_fn(|k| self.turned(k))
     }
 
-    /// The heading that agent `i` chooses with these rooms before agents, m/s; `gap` is the factor of T, and `turned` are
-    /// the unit vectors at all φ_k.
+    /// The heading that agent `i` chooses with these rooms before agents, m/s; `gap` is the factor of T, and `turned`
+    /// are the unit vectors at all φ_k.
     pub(super) fn chosen(
         &self,
         frame: &Frame,
@@ -146,8 +148,8 @@ impl Headings {
         self.best(&rooms, turned, self.followed(frame, i))
     }
 
-    /// The heading with the greatest utility for an agent that follows heading `now`, with `room` for these speeds, m/s.
-    /// Of equal ones it is the one nearest to the way.
+    /// The heading with the greatest utility for an agent that follows heading `now`, with `room` for these speeds,
+    /// m/s. Of equal ones it is the one nearest to the way.
     fn best(&self, room: &[f64; COUNT], turned: &[Vector; COUNT], now: usize) -> usize {
         let utility = |k: usize| self.utility(room[k], turned, [k, now]);
         let mut best = (STRAIGHT, utility(STRAIGHT));
