@@ -54,8 +54,8 @@ pub enum BlendError {
     DifferentRvo,
     /// Two profiles have different walking laws that look ahead.
     #[error(
-        "profiles of one blend share one walking law: give those with `headway`, `density-ahead` or `headings` the same \
-         parameters"
+        "profiles of one blend share one walking law: give those with `headway`, `density-ahead` or `headings` the \
+         same parameters"
     )]
     DifferentLaws,
     /// Two profiles have bodies of different sizes.
