@@ -111,7 +111,7 @@ pub fn zone(k: usize, given: &places::Zone) -> Result<Zone, Problem> {
     let time = given.from_secs..given.until_secs.unwrap_or(f64::INFINITY);
     if time.is_empty() {
         let reason = "must be later than `from_secs`";
-        return Err(Problem::new(&format!("{name}.until_secs"), reason));
+        return Err(Problem::new(format!("{name}.until_secs"), reason));
     }
     Ok(Zone {
         area: ring(&given.area).under(&format!("{name}.area"))?,
