@@ -221,7 +221,7 @@ struct Rooms<'a, R: Real, S: Simd> {
     backwards: [Lanes<R, S>; 2],
     /// Meters per coordinate unit.
     unit: Lanes<R, S>,
-    /// −v_i along the way, and v_i to its right, m/s.
+    /// −v_i along the way, and v_i to its left, m/s.
     own: [Lanes<R, S>; 2],
     /// The cosine and the sine of each φ_k.
     turned: [[Lanes<R, S>; 2]; COUNT],

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 
 /// Parameters of the factor of T.
 ///
-/// People who have been told to hurry, and people who are packed, follow each other more closely; people who are not in
-/// a hurry keep longer gaps where the way becomes narrower.
+/// Hurried people and people in dense crowds follow each other more closely. Calm people keep longer gaps where the way
+/// becomes narrower.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
 #[schemars(default)]
 pub struct Gap {
