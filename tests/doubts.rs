@@ -85,6 +85,26 @@ fn agents_that_never_start_walking_are_counted() {
 }
 
 #[test]
+fn motivations_that_no_law_reads_and_idle_zones_are_noted() {
+    let mut hurried = room();
+    hurried["crowds"][0]["motivation"] = json!(1);
+    assert!(note(&hurried).starts_with("`motivation` has no effect"));
+    hurried["profile"] = json!("steer+sph");
+    assert_eq!(notes(&hurried), [""; 0]);
+    let mut zone = room();
+    zone["zones"] = json!([{"name": "hall", "area": [[1, 1], [3, 1], [3, 3], [1, 3]]}]);
+    assert!(note(&zone).starts_with("zone `hall`: changes nothing"));
+    zone["zones"][0]["motivation"] = json!(0.5);
+    assert!(note(&zone).starts_with("`motivation` has no effect"));
+    zone["profile"] = json!("steer+sph");
+    assert_eq!(notes(&zone), [""; 0]);
+    // That of the whole scenario describes its people, whatever their profile.
+    let mut all = room();
+    all["motivation"] = json!(1);
+    assert_eq!(notes(&all), [""; 0]);
+}
+
+#[test]
 fn crowds_across_a_wall_are_noted_with_the_numbers_on_both_sides() {
     let mut room = room();
     room["walkable_area"] = json!([[[[0, 0], [12, 0], [12, 10], [0, 10]]]]);

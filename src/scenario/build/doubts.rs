@@ -6,7 +6,7 @@ use crate::engine::entrance::Entrance;
 use crate::engine::geometry::Walls;
 use crate::engine::journeys::Kind;
 use crate::engine::math::{Vector, bounds};
-use crate::engine::scene::Scene;
+use crate::engine::scene::{Group, Scene};
 use crate::engine::ways::nearest_on;
 use crate::scenario::build::journeys::TO_NEAREST_EXIT;
 use crate::scenario::error::quote::shown;
@@ -40,7 +40,37 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
         .chain(peaks(keys))
         .chain(at_exits(scene))
         .chain(unused(scene))
+        .chain(unheeded(keys, scene))
         .collect()
+}
+
+/// Notes on motivations that no walking law reads, and on zones that change nothing. The motivation of the whole
+/// scenario describes its people, whatever their profile.
+fn unheeded(keys: &File, scene: &Scene) -> Vec<String> {
+    let zones = &scene.journeys.zones;
+    let idle = zones
+        .iter()
+        .filter(|zone| zone.speed_factor == 1.0 && zone.motivation == 0.0);
+    let idle = idle.map(|zone| {
+        format!(
+            "zone `{}`: changes nothing; give it a `speed_factor` or a `motivation`",
+            shown(&zone.name)
+        )
+    });
+    let mut notes: Vec<String> = idle.collect();
+    let is_own = |group: &Group| group.motivation != keys.motivation;
+    let is_given =
+        scene.groups.iter().any(is_own) || zones.iter().any(|zone| zone.motivation > 0.0);
+    let mut laws = scene
+        .profiles()
+        .filter_map(|profile| profile.walking?.headings().copied());
+    if is_given && !laws.any(|law| law.gap.hurry_share != 0.0) {
+        notes.push(
+            "`motivation` has no effect: no profile has the walking law `headings` with a `hurry_share` (`steer+sph` has)"
+                .to_owned(),
+        );
+    }
+    notes
 }
 
 /// A note on a floor that is so large or empty that its unit may not be meters. Its size is that of the plan, without
