@@ -66,7 +66,8 @@ fn unheeded(keys: &File, scene: &Scene) -> Vec<String> {
         .filter_map(|profile| profile.walking?.headings().copied());
     if is_given && !laws.any(|law| law.gap.hurry_share != 0.0) {
         notes.push(
-            "`motivation` has no effect: no profile has the walking law `headings` with a `hurry_share` (`steer+sph` has)"
+            "`motivation` has no effect: no profile has the walking law `headings` with a `hurry_share`; \
+             `steer+sph` has it"
                 .to_owned(),
         );
     }
