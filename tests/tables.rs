@@ -1,4 +1,4 @@
-//! Tables as text, Markdown and CSV.
+//! Tables as text, Markdown, HTML and CSV.
 
 use sandbox::analysis::statistics::Estimate;
 use sandbox::output::table::Table;
@@ -51,4 +51,20 @@ z,,,3,
     assert_eq!(table().text(), text);
     assert_eq!(table().markdown(), markdown);
     assert_eq!(table().csv().unwrap(), csv.as_bytes());
+}
+
+#[test]
+fn html_has_every_cell_escaped_and_numbers_at_the_right() {
+    let rows = ["<b>", "a & b"];
+    let table = Table::of(&rows)
+        .column("name", |name| *name)
+        .fixed("length", 1, |name| name.len())
+        .table();
+    let lines: Vec<String> = table.html().lines().map(str::to_owned).collect();
+    let row = |tag: &str, name: &str, length: &str| {
+        format!("<tr><{tag}>{name}</{tag}><{tag} class=\"number\">{length}</{tag}></tr>")
+    };
+    assert_eq!(lines[2], row("th", "name", "length"));
+    assert_eq!(lines[5], row("td", "&lt;b&gt;", "3.0"));
+    assert_eq!(lines[6], row("td", "a &amp; b", "5.0"));
 }

@@ -1,5 +1,7 @@
-//! Output: text tables, Rerun recordings (the only module that names `rerun`), trajectories (SQLite, text and CSV), and
-//! pictures and animations (SVG, PNG, PDF, GIF, APNG and video; the only module that names `plotters`).
+//! Output: HTML files, text tables, Rerun recordings (the only module that names `rerun`), trajectories (SQLite, text
+//! and CSV), and pictures and animations (SVG, PNG, PDF, GIF, APNG and video; the only module that names `plotters`).
+
+pub mod html;
 
 pub mod table;
 

@@ -1,9 +1,9 @@
-//! Tables: rows under columns, as plain text for a terminal, as Markdown and as CSV.
+//! Tables: rows under columns, as plain text for a terminal, as Markdown, HTML and CSV.
 //!
-//! A column says how a row fills it. Text and Markdown show numbers as their column formats them, CSV with all digits.
-//! A missing number is `–` in text and Markdown, and empty in CSV. Names for readers end in their unit, as in
-//! `speed [m/s]`, those for programs are words, as in `speed_m_per_s`. JSON does not come from tables: it is the serde
-//! form of the rows themselves.
+//! A column says how a row fills it. Text, Markdown and HTML show numbers as their column formats them, CSV with all
+//! digits. A missing number is `–` there, and empty in CSV. Names for readers end in their unit, as in `speed [m/s]`,
+//! those for programs are words, as in `speed_m_per_s`. JSON does not come from tables: it is the serde form of the rows
+//! themselves.
 
 mod cell;
 
@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::analysis::statistics::Range;
+use crate::output::html::escape;
 use cell::Format;
 
 #[derive(Debug, Clone, PartialEq)]
@@ -127,12 +128,9 @@ impl Table {
     /// As plain text in aligned columns: texts left-aligned, numbers right-aligned.
     pub fn text(&self) -> String {
         let lines = self.lines();
-        let layout = self.heads.iter().enumerate().map(|(k, head)| {
+        let layout = (0..self.heads.len()).map(|k| {
             let width = lines.iter().map(|line| line[k].chars().count()).max();
-            let mut cells = self.rows.iter().map(|row| &row[k]);
-            let is_number = |cell| matches!(cell, &Cell::Number(_) | &Cell::Spread(..));
-            let right = head.format != Format::AllDigits || cells.any(is_number);
-            (width.unwrap_or(0), right)
+            (width.unwrap_or(0), self.has_numbers(k))
         });
         let layout: Vec<(usize, bool)> = layout.collect();
         let mut text = String::new();
@@ -156,6 +154,34 @@ impl Table {
         lines
             .map(|cells| format!("| {} |\n", cells.join(" | ")))
             .collect()
+    }
+
+    /// As HTML, numbers right-aligned.
+    pub fn html(&self) -> String {
+        let mut rows = self.lines().into_iter().map(|cells| {
+            let cells = cells.iter().enumerate().map(|(k, cell)| {
+                let class = if self.has_numbers(k) {
+                    " class=\"number\""
+                } else {
+                    ""
+                };
+                (class, escape(cell))
+            });
+            cells.collect::<Vec<_>>()
+        });
+        let row = |tag: &str, cells: Vec<(&str, String)>| {
+            let cells = cells.iter();
+            let cells = cells.map(|(class, cell)| format!("<{tag}{class}>{cell}</{tag}>"));
+            format!("<tr>{}</tr>\n", cells.collect::<String>())
+        };
+        let head = rows
+            .next()
+            .map(|cells| row("th", cells))
+            .unwrap_or_default();
+        let body: String = rows.map(|cells| row("td", cells)).collect();
+        format!(
+            "<div class=\"scroll\"><table>\n<thead>\n{head}</thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
+        )
     }
 
     /// As CSV.
@@ -185,6 +211,13 @@ impl Table {
         });
         let lines: Vec<Vec<String>> = std::iter::once(heads.collect()).chain(rows).collect();
         csv_lines(&lines, false)
+    }
+
+    /// Whether a column is one of numbers, which are right-aligned.
+    fn has_numbers(&self, k: usize) -> bool {
+        let mut cells = self.rows.iter().map(|row| &row[k]);
+        let is_number = |cell| matches!(cell, &Cell::Number(_) | &Cell::Spread(..));
+        self.heads[k].format != Format::AllDigits || cells.any(is_number)
     }
 
     /// The heads and the rows as they are shown.
