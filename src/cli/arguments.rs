@@ -82,6 +82,9 @@ pub struct OutputOptions {
     /// Time at which the run ends, seconds [default: the scenario's duration]
     #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = seconds)]
     pub until: Option<f64>,
+    /// Also print the computing time of each stage of a frame
+    #[arg(long, short)]
+    pub verbose: bool,
     #[command(flatten)]
     pub record: RecordOptions,
     #[command(flatten)]

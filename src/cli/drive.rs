@@ -10,7 +10,7 @@ use super::interrupt::Interrupt;
 use super::output::{Recording, check, trajectories};
 use super::terminal::{talk, tell};
 use super::watch::Progress;
-use super::{memory, notes, report};
+use super::{memory, notes, results};
 use crate::analysis::stability::{FITTED, Scheme, three_digits};
 use crate::engine::clock::SHORTEST_TIME_STEP;
 use crate::engine::forces::rates::Rates;
@@ -129,7 +129,11 @@ fn go_on(
     let end = driven.map_err(|failure| failure.with_forces(&mut run.simulation))?;
     notes::print(&run);
     notes::print_absent(&options.record, &run.simulation);
-    tell(program.json, || report::json(&run), || report::text(&run))?;
+    tell(
+        program.json,
+        || results::json(&run),
+        || results::text(&run, options.verbose),
+    )?;
     finished.into_iter().collect::<Result<(), _>>()?;
     match interrupt.exit_code() {
         Some(exit_code) if end == End::Interrupted => {

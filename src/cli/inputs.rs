@@ -15,6 +15,11 @@ use crate::scenario::quote::shown;
 use crate::scenario::trajectories::{self, ReadOptions, Tracks};
 use crate::scenario::{Draft, Scenario, Setting};
 
+/// The default profile is the paper's, as files of earlier versions expect; it is not for questions about real people.
+const DEFAULT_PROFILE_NOTE: &str = "note: no `profile` is given: `sph`, the default, is the paper's, whose dense crowds \
+                                    walk two to five times as fast as people do; `steer+sph` is fitted to experiments \
+                                    (docs/validation.md)";
+
 /// Reads a scenario and applies the settings of the command line. `until` is the flag that sets another end, and the
 /// end in seconds. Writing the output files takes `writing` bytes of memory per agent. Adds the files that were read to
 /// `outputs`.
@@ -27,9 +32,14 @@ pub fn scenario(
 ) -> Result<Scenario, Failure> {
     let settings = settings(scene, until, outputs)?;
     let (text, file) = source.text()?;
-    let (scenario, _) = Draft::read(&text, &file, &settings)?.within(main_memory(), writing)?;
+    let draft = Draft::read(&text, &file, &settings)?;
+    let is_default = draft.has_default_profile();
+    let (scenario, _) = draft.within(main_memory(), writing)?;
     if let Source::File(path) = source {
         outputs.reads("the scenario", path);
+        if is_default {
+            talk(DEFAULT_PROFILE_NOTE);
+        }
     }
     for (key, path) in &scenario.files {
         outputs.reads(key, path);

@@ -16,7 +16,7 @@ mod update;
 mod watch;
 
 mod checkpoint;
-mod report;
+mod results;
 
 mod moment;
 mod notes;
@@ -43,7 +43,7 @@ mod manual;
 pub use arguments::PrintOptions;
 pub use bench::{ResultOptions, TimingOptions};
 pub use failure::Failure;
-pub use report::json as json_report;
+pub use results::json as json_report;
 pub use update::UpdateOptions;
 
 use std::ffi::OsString;

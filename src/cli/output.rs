@@ -6,7 +6,7 @@ use std::path::Path;
 use super::arguments::{OutputOptions, RecordOptions, TrajectoryOptions};
 use super::failure::Failure;
 use super::interrupt::Interrupt;
-use super::report;
+use super::results;
 use super::terminal::talk;
 use super::values::{ids, region};
 use crate::engine::clock::Clock;
@@ -126,8 +126,8 @@ impl Observer<Failure> for Recording {
             self.ended = true;
             let end = format!("The run ends: {}.", run.reason());
             self.recorder.note(&self.last, &end)?;
-            let json = report::json(run).to_string();
-            self.recorder.results(&report::text(run), &json)?;
+            let json = results::json(run).to_string();
+            self.recorder.results(&results::text(run, false), &json)?;
         }
         Ok(())
     }

@@ -9,7 +9,9 @@ use serde_json::{Value, json};
 use crate::engine::journeys::{Kind, Place};
 use crate::engine::simulation::{self, PlaceState, Simulation};
 use crate::runs::drive::{End, Run};
-use crate::scenario::measurements::{Left, Metric, StuckGroup};
+use crate::scenario::measurements::{
+    HighestDensity, Left, LongestQueue, Metric, StuckGroup, times_to_leave,
+};
 
 /// The results of a run, part of what `--json` reports.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -40,6 +42,21 @@ pub struct Summary {
     /// Number of agents at the end.
     #[serde(default)]
     pub remaining: usize,
+    /// When half of the agents that entered had left, seconds.
+    #[serde(default)]
+    pub t50_secs: Option<f64>,
+    /// When 95 % of them had left, seconds.
+    #[serde(default)]
+    pub t95_secs: Option<f64>,
+    /// When all of them had left, seconds.
+    #[serde(default)]
+    pub t100_secs: Option<f64>,
+    /// The highest SPH density at an agent; `None` if no force needs densities.
+    #[serde(default)]
+    pub highest_density: Option<HighestDensity>,
+    /// The longest queue before each place and goal, the longest one first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub longest_queues: Vec<LongestQueue>,
     /// Why the run ended; `None` if it has not.
     pub end: Option<End>,
     /// Number of agents at the end that had made less than 1 m of headway in 20 s of walking.
@@ -96,6 +113,8 @@ impl Summary {
         };
         let measured = run.metrics.results(simulation).into_iter();
         let stuck_because = run.metrics.stuck(simulation);
+        let times: Vec<f64> = outcome.arrivals.iter().map(|one| one.time).collect();
+        let [t50_secs, t95_secs, t100_secs] = times_to_leave(&times, frame.agents.entered());
         Self {
             scenario: scenario.name.clone(),
             profile: scenario.profile_name.clone(),
@@ -108,6 +127,11 @@ impl Summary {
             agents: frame.agents.entered(),
             arrived: outcome.arrivals.len(),
             remaining: frame.agents.count_present(),
+            t50_secs,
+            t95_secs,
+            t100_secs,
+            highest_density: run.metrics.highest_density(),
+            longest_queues: run.metrics.longest_queues(simulation),
             end: run.end,
             stuck: stuck_because.iter().map(|group| group.agents).sum(),
             stuck_because,

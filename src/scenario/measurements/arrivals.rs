@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Measure, Observed};
+use super::{Measure, Observed, Quantity};
 use crate::engine::simulation::Simulation;
 use crate::scenario::keys::limits::LONGEST_TIME;
 
@@ -65,8 +65,12 @@ impl Measure for FlowOfFirst {
         Vec::new()
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        vec![("flow_per_s".to_owned(), "P/s")]
+    fn quantities(&self) -> Vec<Quantity> {
+        let meaning = format!(
+            "(n − 1) / (time of the n-th counted arrival − time of the first), n = {}",
+            self.arrivals
+        );
+        vec![Quantity::new("flow_per_s", "P/s", &meaning)]
     }
 
     fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
@@ -82,8 +86,14 @@ impl Measure for FlowUntil {
         Vec::new()
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        vec![(format!("flow_first_{}s_per_s", self.until_secs), "P/s")]
+    fn quantities(&self) -> Vec<Quantity> {
+        let secs = self.until_secs;
+        let meaning = format!("counted arrivals in the first {secs} s, per second");
+        vec![Quantity::new(
+            format!("flow_first_{secs}s_per_s"),
+            "P/s",
+            &meaning,
+        )]
     }
 
     fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
@@ -103,8 +113,12 @@ impl Measure for Evacuated {
         Vec::new()
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        vec![("evacuated".to_owned(), "agents")]
+    fn quantities(&self) -> Vec<Quantity> {
+        vec![Quantity::new(
+            "evacuated",
+            "agents",
+            "number of counted arrivals",
+        )]
     }
 
     fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
@@ -119,8 +133,9 @@ impl Measure for Uncounted {
         Vec::new()
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        vec![("uncounted".to_owned(), "agents")]
+    fn quantities(&self) -> Vec<Quantity> {
+        let meaning = "number of arrivals that are not counted";
+        vec![Quantity::new("uncounted", "agents", meaning)]
     }
 
     fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
@@ -136,9 +151,16 @@ impl Measure for Pauses {
         Vec::new()
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let between = "flow_between_pauses_per_s".to_owned();
-        vec![("pauses_secs".to_owned(), "s"), (between, "P/s")]
+    fn quantities(&self) -> Vec<Quantity> {
+        let (count, longest) = (self.arrivals, self.longer_than_secs);
+        let sum = format!(
+            "sum of the gaps of at least {longest} s between the first {count} counted arrivals"
+        );
+        let flow = format!("flow of the first {count} counted arrivals without these gaps");
+        vec![
+            Quantity::new("pauses_secs", "s", &sum),
+            Quantity::new("flow_between_pauses_per_s", "P/s", &flow),
+        ]
     }
 
     fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
@@ -157,8 +179,12 @@ impl Measure for Locked {
         Vec::new()
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        vec![("locked".to_owned(), "runs")]
+    fn quantities(&self) -> Vec<Quantity> {
+        let meaning = format!(
+            "1 if fewer than {} counted agents arrived by the end of the run, else 0",
+            self.arrivals
+        );
+        vec![Quantity::new("locked", "runs", &meaning)]
     }
 
     fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {

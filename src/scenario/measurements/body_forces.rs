@@ -5,7 +5,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::window::{MOST_MASS, Window, body_mass};
-use super::{About, Measure, Observed};
+use super::{About, Measure, Observed, Quantity};
 use crate::analysis::body_forces::{BodyForces as Seen, PersonForce, THRESHOLDS, WIDTH, pressed};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -56,22 +56,46 @@ impl Measure for BodyForces {
         self.window.check("body_forces")
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let name = |what: &str| format!("{}_{what}", self.name());
+    fn quantities(&self) -> Vec<Quantity> {
         let most = [
-            (name("max_n"), "N"),
-            (name("max_at_secs"), "s"),
-            (name("max_x_m"), "m"),
-            (name("max_y_m"), "m"),
-            (name("max_stress_n_per_m"), "N/m"),
+            (
+                "max_n",
+                "N",
+                "largest force on a person: the largest principal pressure times a width of 0.5 m",
+            ),
+            ("max_at_secs", "s", "when it was largest"),
+            ("max_x_m", "m", "where it was largest: x"),
+            ("max_y_m", "m", "where it was largest: y"),
+            (
+                "max_stress_n_per_m",
+                "N/m",
+                "largest principal pressure there",
+            ),
         ];
         let above = THRESHOLDS.into_iter().flat_map(|mark| {
+            let of = |what: &str, unit, meaning: &str| {
+                Quantity::new(
+                    format!("{}_above_{mark}_n_{what}", self.name()),
+                    unit,
+                    meaning,
+                )
+            };
             [
-                (name(&format!("above_{mark}_n_agents")), "agents"),
-                (name(&format!("above_{mark}_n_secs")), "s"),
+                of(
+                    "agents",
+                    "agents",
+                    &format!("people who were ever above {mark} N"),
+                ),
+                of(
+                    "secs",
+                    "s",
+                    &format!("longest time of one person above {mark} N without a break"),
+                ),
             ]
         });
-        most.into_iter().chain(above).collect()
+        let mut quantities = Quantity::all(self.name(), &most);
+        quantities.extend(above);
+        quantities
     }
 
     fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {

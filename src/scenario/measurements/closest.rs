@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Measure, Observed, is_due};
+use super::{Measure, Observed, Quantity, is_due};
 use crate::engine::simulation::Simulation;
 use crate::scenario::keys::limits::LONGEST_TIME;
 
@@ -28,8 +28,10 @@ impl Measure for Closest {
         Vec::new()
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        vec![("closest_centers".to_owned(), "D_i + D_j")]
+    fn quantities(&self) -> Vec<Quantity> {
+        let meaning = "smallest distance between two centers as a part of the sum of the radii, at most 1, in ten frames \
+                       per second";
+        vec![Quantity::new("closest_centers", "D_i + D_j", meaning)]
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Measure, Observed};
+use super::{Measure, Observed, Quantity};
 use crate::analysis::sound::{self, Contacts};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -33,10 +33,22 @@ impl Measure for ContactsAt {
         region("contacts.region", self.region).map(|_| ())
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let per_agent = "contacts_per_agent".to_owned();
-        let modulus = "contact_modulus_m2".to_owned();
-        vec![(per_agent, "contacts"), (modulus, "m²")]
+    fn quantities(&self) -> Vec<Quantity> {
+        let at = format!("agents in the region at {} s", self.at_secs);
+        vec![
+            Quantity::new(
+                "contacts_per_agent",
+                "contacts",
+                &format!("mean number of contacts of {at}"),
+            ),
+            Quantity::new(
+                "contact_modulus_m2",
+                "m²",
+                &format!(
+                    "stiffness of the contacts of {at} against compression, per contact stiffness"
+                ),
+            ),
+        ]
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {

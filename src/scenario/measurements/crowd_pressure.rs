@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::window::Window;
-use super::{About, Measure, Observed};
+use super::{About, Measure, Observed, Quantity};
 use crate::analysis::crowd_pressure::{BEFORE_ACCIDENT, Pressures};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -44,22 +44,38 @@ impl Measure for CrowdPressure {
         self.window.check("crowd_pressure")
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let name = self.name.as_deref().unwrap_or(NAME);
+    fn quantities(&self) -> Vec<Quantity> {
+        let most = format!("most people above {BEFORE_ACCIDENT} 1/s² at one time");
+        let longest = format!(
+            "longest time without a break with at least one person above {BEFORE_ACCIDENT} 1/s²"
+        );
+        let (agents, secs) = (
+            format!("above_{BEFORE_ACCIDENT}_agents"),
+            format!("above_{BEFORE_ACCIDENT}_secs"),
+        );
         let values = [
-            ("max_per_s2", "1/s²"),
-            ("max_at_secs", "s"),
-            ("max_x_m", "m"),
-            ("max_y_m", "m"),
-            ("max_density_per_m2", "P/m²"),
-            ("mean_per_s2", "1/s²"),
+            (
+                "max_per_s2",
+                "1/s²",
+                "highest crowd pressure, ρ Var(v), at one person",
+            ),
+            ("max_at_secs", "s", "when it was highest"),
+            ("max_x_m", "m", "where it was highest: x"),
+            ("max_y_m", "m", "where it was highest: y"),
+            (
+                "max_density_per_m2",
+                "P/m²",
+                "density at the highest crowd pressure",
+            ),
+            (
+                "mean_per_s2",
+                "1/s²",
+                "mean crowd pressure over people and samples",
+            ),
+            (&agents, "agents", &most),
+            (&secs, "s", &longest),
         ];
-        let above = [
-            (format!("{name}_above_{BEFORE_ACCIDENT}_agents"), "agents"),
-            (format!("{name}_above_{BEFORE_ACCIDENT}_secs"), "s"),
-        ];
-        let values = values.map(|(what, unit)| (format!("{name}_{what}"), unit));
-        values.into_iter().chain(above).collect()
+        Quantity::all(self.name.as_deref().unwrap_or(NAME), &values)
     }
 
     fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{About, Measure, Observed};
+use super::{About, Measure, Observed, Quantity};
 use crate::analysis::statistics::MeanStd;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
@@ -35,9 +35,27 @@ impl Measure for Density {
         })
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let name = |what| (format!("density_{what}_{}s", self.at_secs), "P/m²");
-        ["mean", "std"].map(name).into()
+    fn quantities(&self) -> Vec<Quantity> {
+        let region = if self.region.is_some() {
+            "in the region"
+        } else {
+            ""
+        };
+        let of = |what: &str, meaning: &str| {
+            let meaning = format!(
+                "{meaning} of the SPH densities of the agents {region} at {} s",
+                self.at_secs
+            );
+            Quantity::new(
+                format!("density_{what}_{}s", self.at_secs),
+                "P/m²",
+                &meaning,
+            )
+        };
+        vec![
+            of("mean", "mean"),
+            of("std", "population standard deviation"),
+        ]
     }
 
     fn about(&self) -> About {

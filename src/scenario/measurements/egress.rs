@@ -5,15 +5,16 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{About, Measure, Observed};
-use crate::engine::journeys::Kind;
+use super::{About, Measure, Observed, Quantity};
+use crate::engine::clock::Clock;
+use crate::engine::journeys::{Kind, Status};
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
 use crate::engine::ways::{Destination, Goal, PathMap};
 
 /// Of the people on one journey, or on all journeys: how many have left at an exit, the mean time from entry to exit,
-/// the times by which 50 %, 95 % and all have left, the mean wait in queues and waiting areas, and the mean and the
-/// largest delay against free walking.
+/// the times by which 50 %, 95 % and all have left, the mean wait in queues and waiting areas, that in waiting areas
+/// alone, and the mean and the largest delay against free walking, without the time in waiting areas.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Egress {
@@ -59,21 +60,26 @@ impl Left {
             let sum: f64 = left.iter().map(value).sum();
             (!left.is_empty()).then(|| sum / left.len() as f64)
         };
-        let time_of = |part: f64| {
-            let count = (part * f64::from(started)).ceil() as usize;
-            let last = count.checked_sub(1).and_then(|k| left.get(k));
-            last.map(|&(time, ..)| time)
-        };
+        let times: Vec<f64> = left.iter().map(|&(time, ..)| time).collect();
+        let [t50_secs, t95_secs, t100_secs] = times_to_leave(&times, started);
         Self {
             started,
             finished: left.len() as u32,
             mean_secs: mean(|&(_, lasting, _)| lasting),
-            t50_secs: time_of(0.5),
-            t95_secs: time_of(0.95),
-            t100_secs: time_of(1.0),
+            t50_secs,
+            t95_secs,
+            t100_secs,
             waited_secs: mean(|&(.., waited)| waited),
         }
     }
+}
+
+/// When 50 %, 95 % and all of `started` people had left, who leave at ascending times, seconds.
+pub fn times_to_leave(times: &[f64], started: u32) -> [Option<f64>; 3] {
+    [0.5, 0.95, 1.0].map(|part| {
+        let count = (part * f64::from(started)).ceil() as usize;
+        count.checked_sub(1).and_then(|k| times.get(k).copied())
+    })
 }
 
 /// An agent on its way.
@@ -90,6 +96,10 @@ struct Walker {
     from: Vector,
     /// The length of the shortest ways of the stages before, meters.
     length: f64,
+    /// The frame since which it waits in a waiting area.
+    waits_since: Option<u64>,
+    /// How long it has waited in waiting areas before, seconds.
+    rested: f64,
 }
 
 /// What was seen so far.
@@ -101,9 +111,25 @@ pub struct Seen {
     arrivals: usize,
     /// The delays of the agents that have left, seconds.
     delays: Vec<f64>,
+    /// The times in waiting areas of the agents that have left, seconds.
+    rests: Vec<f64>,
     /// The path maps to the fronts of queues, which follow from the scene.
     #[serde(skip)]
     fronts: BTreeMap<u16, Option<PathMap>>,
+}
+
+impl Walker {
+    /// Follows its waits in waiting areas, which begin and end in coarse frames.
+    fn follow_wait(&mut self, status: Status, clock: &Clock) {
+        let since = match status {
+            Status::Waiting { since, .. } => Some(since),
+            _ => None,
+        };
+        if let Some(before) = self.waits_since.filter(|_| self.waits_since != since) {
+            self.rested += clock.time() - clock.time_at(before);
+        }
+        self.waits_since = since;
+    }
 }
 
 impl Egress {
@@ -156,21 +182,37 @@ impl Measure for Egress {
         }
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
+    fn quantities(&self) -> Vec<Quantity> {
         let of = self.journey.as_ref();
         let of = of.map_or(String::new(), |journey| format!("_{journey}"));
-        let name = |(name, unit): (&str, &'static str)| (format!("{name}{of}"), unit);
         let values = [
-            ("finished", "agents"),
-            ("mean_secs", "s"),
-            ("t50_secs", "s"),
-            ("t95_secs", "s"),
-            ("t100_secs", "s"),
-            ("waited_secs", "s"),
-            ("delay_secs", "s"),
-            ("longest_delay_secs", "s"),
+            (
+                "finished",
+                "agents",
+                "people on journeys that have left at an exit",
+            ),
+            ("mean_secs", "s", "mean time from entry to exit"),
+            ("t50_secs", "s", "when 50 % of those who started had left"),
+            ("t95_secs", "s", "when 95 % of those who started had left"),
+            ("t100_secs", "s", "when all who started had left"),
+            ("waited_secs", "s", "mean time in queues and waiting areas"),
+            (
+                "wished_secs",
+                "s",
+                "mean time in waiting areas, where people wait because their journey says so",
+            ),
+            (
+                "delay_secs",
+                "s",
+                "mean of time to leave − pre-movement time − time in waiting areas − length of the shortest ways / \
+                 preferred speed",
+            ),
+            ("longest_delay_secs", "s", "the largest of these delays"),
         ];
-        values.into_iter().map(name).collect()
+        let quantity = |(name, unit, meaning): (&str, _, _)| {
+            Quantity::new(format!("{name}{of}"), unit, meaning)
+        };
+        values.into_iter().map(quantity).collect()
     }
 
     fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
@@ -182,8 +224,9 @@ impl Measure for Egress {
                 let last = seen.length(simulation, trip.exit, [walker.from; 2]);
                 let free = (walker.length + last) / walker.speed;
                 // People whose preferred speed is 0 do not walk freely.
-                let delay = Some(arrival.time - walker.due - free);
+                let delay = Some(arrival.time - walker.due - walker.rested - free);
                 seen.delays.extend(delay.filter(|secs| secs.is_finite()));
+                seen.rests.push(walker.rested);
             }
         }
         seen.arrivals = simulation.outcome().arrivals.len();
@@ -209,7 +252,10 @@ impl Measure for Egress {
                 place: trip.place,
                 from: position,
                 length: 0.0,
+                waits_since: None,
+                rested: 0.0,
             });
+            walker.follow_wait(trip.status, clock);
             if walker.stage != trip.stage {
                 walker.length += seen.length(simulation, walker.place, [walker.from, position]);
                 (walker.stage, walker.from) = (trip.stage, position);
@@ -221,11 +267,11 @@ impl Measure for Egress {
 
     fn values(&self, seen: &Seen, simulation: &Simulation) -> Vec<Option<f64>> {
         let Ok(number) = self.number(simulation) else {
-            return vec![None; self.names().len()];
+            return vec![None; self.quantities().len()];
         };
         let left = Left::of(simulation, number);
-        let delays = &seen.delays;
-        let mean = delays.iter().sum::<f64>() / delays.len() as f64;
+        let mean =
+            |secs: &[f64]| (!secs.is_empty()).then(|| secs.iter().sum::<f64>() / secs.len() as f64);
         vec![
             Some(f64::from(left.finished)),
             left.mean_secs,
@@ -233,8 +279,9 @@ impl Measure for Egress {
             left.t95_secs,
             left.t100_secs,
             left.waited_secs,
-            (!delays.is_empty()).then_some(mean),
-            delays.iter().copied().reduce(f64::max),
+            mean(&seen.rests),
+            mean(&seen.delays),
+            seen.delays.iter().copied().reduce(f64::max),
         ]
     }
 }

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::window::Window;
-use super::{About, Measure, Observed};
+use super::{About, Measure, Observed, Quantity};
 use crate::analysis::exposure::{DENSITIES, Exposed, Exposure as Seen, PersonExposure};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -51,26 +51,56 @@ impl Measure for Exposure {
         self.window.check("exposure")
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let exposed = [
-            ("agents", "agents"),
-            ("person_secs", "s"),
-            ("longest_secs", "s"),
-        ];
-        let alarm = [
-            ("area_m2", "m²"),
-            ("most_agents", "agents"),
-            ("alarm_secs", "s"),
-        ];
-        let name = |condition: &str, (what, unit): (&str, &'static str)| {
-            (format!("{}_{condition}_{what}", self.name()), unit)
+    fn quantities(&self) -> Vec<Quantity> {
+        let exposed = |condition: &str, short: &str| {
+            [
+                (
+                    "agents",
+                    "agents",
+                    format!("people who were ever {condition}"),
+                ),
+                (
+                    "person_secs",
+                    "s",
+                    format!("sum of their times {condition}"),
+                ),
+                (
+                    "longest_secs",
+                    "s",
+                    format!("longest total time of one person {condition}"),
+                ),
+            ]
+            .map(|(what, unit, meaning)| {
+                Quantity::new(format!("{}_{short}_{what}", self.name()), unit, &meaning)
+            })
         };
         let dense = DENSITIES.iter().flat_map(|density| {
-            let all = exposed.into_iter().chain(alarm);
-            all.map(move |value| name(&format!("above_{density}"), value))
+            let above = format!("above {density} P/m²");
+            let short = format!("above_{density}");
+            let alarm = [
+                (
+                    "area_m2",
+                    "m²",
+                    format!("largest area at one time, Σ 1/ρ_i over the people {above}"),
+                ),
+                (
+                    "most_agents",
+                    "agents",
+                    format!("most people {above} at one time"),
+                ),
+                (
+                    "alarm_secs",
+                    "s",
+                    format!("longest time without a break with at least one person {above}"),
+                ),
+            ];
+            let alarm = alarm.map(|(what, unit, meaning)| {
+                Quantity::new(format!("{}_{short}_{what}", self.name()), unit, &meaning)
+            });
+            exposed(&above, &short).into_iter().chain(alarm)
         });
         dense
-            .chain(exposed.into_iter().map(|value| name("slow", value)))
+            .chain(exposed("slower than 0.2 m/s", "slow"))
             .collect()
     }
 

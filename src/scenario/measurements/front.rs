@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::{Measure, Observed};
+use super::{Measure, Observed, Quantity};
 use crate::analysis::front;
 use crate::analysis::statistics::Estimate;
 use crate::engine::math::{Vector, direction};
@@ -114,18 +114,37 @@ impl Measure for Front {
         })
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
+    fn quantities(&self) -> Vec<Quantity> {
         let values = [
-            ("agents", "agents"),
-            ("reach_m", "m"),
-            ("speed_m_per_s", "m/s"),
-            ("speed_error_m_per_s", "m/s"),
-            ("slowness_s_per_m", "s/m"),
-            ("slowness_error_s_per_m", "s/m"),
-            ("speed_in_space_m_per_s", "m/s"),
+            ("agents", "agents", "people that the front reached"),
+            (
+                "reach_m",
+                "m",
+                "distance from the first person to the farthest one reached",
+            ),
+            (
+                "speed_m_per_s",
+                "m/s",
+                "speed of the front: the median slope of its times over places (Theil 1950)",
+            ),
+            (
+                "speed_error_m_per_s",
+                "m/s",
+                "standard error of the speed (jackknife)",
+            ),
+            ("slowness_s_per_m", "s/m", "1 / speed"),
+            (
+                "slowness_error_s_per_m",
+                "s/m",
+                "standard error of the slowness",
+            ),
+            (
+                "speed_in_space_m_per_s",
+                "m/s",
+                "speed over the places where people began to move",
+            ),
         ];
-        let name = |(what, unit)| (format!("{}_{what}", self.name()), unit);
-        values.into_iter().map(name).collect()
+        Quantity::all(self.name(), &values)
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
@@ -171,7 +190,7 @@ impl Measure for Front {
 
     fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
         let Some(people) = seen else {
-            return vec![None; self.names().len()];
+            return vec![None; self.quantities().len()];
         };
         let reached = || people.iter().filter(|of| of.secs.is_some());
         let first = people.iter().map(|of| of.place).reduce(f64::min);

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::fence::Fence;
-use super::{Measure, Observed};
+use super::{Measure, Observed, Quantity};
 use crate::engine::math::{Vector, are_finite};
 use crate::engine::simulation::Simulation;
 
@@ -49,12 +49,28 @@ impl Measure for Integrity {
         Vec::new()
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
+    fn quantities(&self) -> Vec<Quantity> {
         vec![
-            ("agents_through_walls".to_owned(), "agents"),
-            ("non_finite_frames".to_owned(), "frames"),
-            ("highest_speed_m_per_s".to_owned(), "m/s"),
-            ("speed_at_end_m_per_s".to_owned(), "m/s"),
+            Quantity::new(
+                "agents_through_walls",
+                "agents",
+                "agents that were inside an obstacle or moved through a wall",
+            ),
+            Quantity::new(
+                "non_finite_frames",
+                "frames",
+                "frames with numbers that are not finite",
+            ),
+            Quantity::new(
+                "highest_speed_m_per_s",
+                "m/s",
+                "highest speed of an agent in any frame",
+            ),
+            Quantity::new(
+                "speed_at_end_m_per_s",
+                "m/s",
+                "root mean square of the speeds at the end",
+            ),
         ]
     }
 

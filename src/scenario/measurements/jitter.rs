@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{About, Mean, Measure, Observed, is_due};
+use super::{About, Mean, Measure, Observed, Quantity, is_due};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::keys::limits::LONGEST_TIME;
@@ -40,10 +40,23 @@ impl Measure for Jitter {
         Ok(())
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let window = format!("{}_to_{}s", self.from_secs, self.until_secs);
-        let name = |part| (format!("jitter{part}_{window}"), "m²/s²");
-        ["", "_inside", "_rim"].map(name).into()
+    fn quantities(&self) -> Vec<Quantity> {
+        let (from, until) = (self.from_secs, self.until_secs);
+        let of = |(part, people): (&str, &str)| {
+            let meaning =
+                format!("mean kinetic energy per mass of {people} from {from} to {until} s");
+            Quantity::new(
+                format!("jitter{part}_{from}_to_{until}s"),
+                "m²/s²",
+                &meaning,
+            )
+        };
+        let parts = [
+            ("", "all agents"),
+            ("_inside", "the denser three quarters of the agents"),
+            ("_rim", "the least dense quarter of the agents"),
+        ];
+        parts.map(of).into()
     }
 
     fn about(&self) -> About {

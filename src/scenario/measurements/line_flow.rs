@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::window::walkable_area;
-use super::{Measure, Observed};
+use super::{Measure, Observed, Quantity};
 use crate::analysis::crossing::{Balance, Line, Passages};
 use crate::engine::clock::Clock;
 use crate::engine::geometry::Walls;
@@ -121,17 +121,25 @@ impl Measure for LineFlow {
         })
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let name = |(what, unit)| (format!("{}_{what}", self.name()), unit);
+    fn quantities(&self) -> Vec<Quantity> {
+        let [first, last] = self.part.unwrap_or(PART).map(|part| 100.0 * part);
+        let part = format!("from the first {first} % to {last} % of the passages");
+        let flow = format!("passages per second {part}");
+        let density = format!("people in the region / its walkable area, mean {part}");
+        let speed = format!("mean speed in the region {part}");
         let values = [
-            ("passages", "agents"),
-            ("flow_per_s", "P/s"),
-            ("density_per_m2", "P/m²"),
-            ("speed_m_per_s", "m/s"),
+            (
+                "passages",
+                "agents",
+                "passages of the line in the whole run, in either direction",
+            ),
+            ("flow_per_s", "P/s", &flow),
+            ("density_per_m2", "P/m²", &density),
+            ("speed_m_per_s", "m/s", &speed),
         ];
         // Density and speed are those in the region.
         let count = if self.region.is_some() { 4 } else { 2 };
-        values.into_iter().take(count).map(name).collect()
+        Quantity::all(self.name(), &values[..count])
     }
 
     fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
@@ -192,7 +200,7 @@ impl LineFlow {
             };
             self.see(&mut seen, &moment, std::iter::empty(), there);
         }
-        let names = self.names().into_iter().map(|(name, _)| name);
+        let names = self.quantities().into_iter().map(|one| one.name);
         let values = names.zip(self.results(&seen, &scene.walls)).collect();
         (values, (self.name().to_owned(), json!(seen.times)))
     }

@@ -21,6 +21,8 @@ mod line_flow;
 mod mean;
 mod observed;
 mod oscillation;
+mod overview;
+mod quantity;
 mod running;
 mod service_levels;
 mod snapshot;
@@ -36,7 +38,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 pub use arrivals::{Evacuated, FlowOfFirst, FlowUntil, Locked, Pauses, Uncounted};
 pub use body_forces::BodyForces;
@@ -44,7 +46,7 @@ pub use closest::{Closest, closest};
 pub use contacts::ContactsAt;
 pub use crowd_pressure::CrowdPressure;
 pub use density::Density;
-pub use egress::{Egress, Left};
+pub use egress::{Egress, Left, times_to_leave};
 pub use exposure::Exposure;
 pub use frame_time::{FrameTime, StageTimes};
 pub use front::{Front, FrontData, Reached};
@@ -53,6 +55,8 @@ pub use jitter::Jitter;
 pub use line_flow::LineFlow;
 pub use observed::Observed;
 pub use oscillation::Oscillation;
+pub use overview::{GAP, HighestDensity, LongestQueue, SLOW};
+pub use quantity::Quantity;
 pub use service_levels::ServiceLevels;
 pub use snapshot::{Snapshot, SnapshotAt};
 pub use speed_by_density::SpeedByDensity;
@@ -66,6 +70,7 @@ use super::keys::places::journey_named;
 use crate::engine::journeys::Journey;
 use crate::engine::simulation::Simulation;
 use mean::Mean;
+use overview::Overview;
 use running::{Running, started};
 use stuck::Stuck;
 
@@ -82,8 +87,8 @@ pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
         Ok(())
     }
 
-    /// The names of its values and their units. They are unique in a scenario.
-    fn names(&self) -> Vec<(String, &'static str)> {
+    /// What it measures. The names are unique in a scenario.
+    fn quantities(&self) -> Vec<Quantity> {
         Vec::new()
     }
 
@@ -98,7 +103,7 @@ pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
     /// Observes an evaluated frame; called in every frame.
     fn observe(&self, _seen: &mut Self::Seen, _simulation: &Simulation) {}
 
-    /// The values in the order of their names; `None` if there were no agents or too few arrivals, or if the run ended
+    /// The values in the order of the quantities; `None` if there were no agents or too few arrivals, or if the run ended
     /// too early.
     fn values(&self, _seen: &Self::Seen, _simulation: &Simulation) -> Vec<Option<f64>> {
         Vec::new()
@@ -235,8 +240,13 @@ impl Measurement {
 
     /// The names of its values.
     pub fn names(&self) -> Vec<String> {
-        let names = self.started().names().into_iter();
-        names.map(|(name, _)| name).collect()
+        let quantities = self.quantities().into_iter();
+        quantities.map(|quantity| quantity.name).collect()
+    }
+
+    /// What it measures.
+    pub fn quantities(&self) -> Vec<Quantity> {
+        self.started().quantities()
     }
 }
 
@@ -245,6 +255,8 @@ impl Measurement {
 pub struct Metric {
     /// Its name in reports.
     pub name: String,
+    /// The number of the scenario's measurement, from 0.
+    pub measurement: usize,
     /// The value; `None` if there were no agents or too few arrivals, or if the run ended too early.
     pub value: Option<f64>,
     /// The unit of the value.
@@ -256,6 +268,7 @@ pub struct Metrics {
     running: Vec<Box<dyn Running>>,
     /// Observed in every run.
     stuck: (Stuck, <Stuck as Measure>::Seen),
+    overview: Overview,
     /// The number of the last observed frame.
     observed: Option<u64>,
 }
@@ -271,6 +284,7 @@ impl Metrics {
         Self {
             running,
             stuck: (Stuck, Vec::new()),
+            overview: Overview::default(),
             observed: None,
         }
     }
@@ -285,6 +299,19 @@ impl Metrics {
             measurement.observe(simulation);
         }
         self.stuck.observe(simulation);
+        self.overview.observe(&self.stuck.1, simulation);
+    }
+
+    /// The highest SPH density at an agent in a coarse frame; `None` if no force needs densities.
+    pub fn highest_density(&self) -> Option<HighestDensity> {
+        self.overview.highest()
+    }
+
+    /// The longest queue before each place and goal, the longest one first. In a queue are the agents that walk there
+    /// slower than [`SLOW`] times their preferred speed, from the place up to the first [`GAP`] along their ways; at a
+    /// place with a queue of its own, the agents in it. Observed every second.
+    pub fn longest_queues(&self, simulation: &Simulation) -> Vec<LongestQueue> {
+        self.overview.longest(simulation)
     }
 
     /// The agents that made less than [`HEADWAY`] in [`STUCK_AFTER`] seconds of walking, grouped by the likely cause,
@@ -302,10 +329,15 @@ impl Metrics {
 
     /// The values measured so far.
     pub fn results(&self, simulation: &Simulation) -> Vec<Metric> {
-        let metric = |((name, unit), value)| Metric { name, value, unit };
-        let measured = self.running.iter().flat_map(|measurement| {
-            let named = measurement.names().into_iter();
-            named.zip(measurement.values(simulation)).map(metric)
+        let measured = self.running.iter().enumerate().flat_map(|(k, running)| {
+            let quantities = running.quantities().into_iter();
+            let values = running.values(simulation);
+            quantities.zip(values).map(move |(quantity, value)| Metric {
+                name: quantity.name,
+                measurement: k,
+                value,
+                unit: quantity.unit,
+            })
         });
         measured.collect()
     }
@@ -320,7 +352,9 @@ impl Metrics {
     /// What each measurement has seen so far, as JSON.
     pub fn seen(&self) -> Vec<String> {
         let seen = self.running.iter().map(|one| one.seen().to_string());
-        seen.chain([self.stuck.seen().to_string()]).collect()
+        let overview = json!(self.overview).to_string();
+        seen.chain([self.stuck.seen().to_string(), overview])
+            .collect()
     }
 
     /// Restores what was [`seen`](Self::seen) up to and in frame number `frame`; what does not match is ignored.
@@ -328,9 +362,12 @@ impl Metrics {
         self.observed = Some(frame);
         let running = self.running.iter_mut().map(AsMut::as_mut);
         let stuck: &mut dyn Running = &mut self.stuck;
-        for (measurement, seen) in running.chain([stuck]).zip(seen) {
+        let mut seen = seen.iter();
+        for (measurement, seen) in running.chain([stuck]).zip(&mut seen) {
             measurement.resume(seen);
         }
+        let overview = seen.next().and_then(|seen| serde_json::from_str(seen).ok());
+        self.overview = overview.unwrap_or_default();
     }
 }
 

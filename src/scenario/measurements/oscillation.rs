@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::window::{Samples, Window};
-use super::{Measure, Observed};
+use super::{Measure, Observed, Quantity};
 use crate::analysis::oscillation::Oscillation as Found;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
@@ -135,17 +135,38 @@ impl Measure for Oscillation {
         }
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
+    fn quantities(&self) -> Vec<Quantity> {
+        let [low, high] = self.band;
+        let band = format!("part of the power from {low} to {high} rad/s");
         let values = [
-            ("peak_rad_per_s", "rad/s"),
-            ("peak_share", ""),
-            ("band_share", ""),
-            ("speed_m_per_s", "m/s"),
-            ("spin", ""),
-            ("spin_rms", ""),
+            (
+                "peak_rad_per_s",
+                "rad/s",
+                "angular frequency with the most power density",
+            ),
+            (
+                "peak_share",
+                "",
+                "part of the power within twice the resolution of the peak",
+            ),
+            ("band_share", "", band.as_str()),
+            (
+                "speed_m_per_s",
+                "m/s",
+                "root mean square of the mean velocities, minus their means over time",
+            ),
+            (
+                "spin",
+                "",
+                "mean over the boxes of (P₊ − P₋)/(P₊ + P₋) around the peak: counterclockwise 1, clockwise −1",
+            ),
+            (
+                "spin_rms",
+                "",
+                "root mean square of the spin over the boxes",
+            ),
         ];
-        let name = |(what, unit)| (format!("{}_{what}", self.name()), unit);
-        values.into_iter().map(name).collect()
+        Quantity::all(self.name(), &values)
     }
 
     fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
@@ -177,7 +198,7 @@ impl Measure for Oscillation {
 
     fn values(&self, seen: &Seen, _: &Simulation) -> Vec<Option<f64>> {
         let Some(found) = self.found(seen) else {
-            return vec![None; self.names().len()];
+            return vec![None; self.quantities().len()];
         };
         let count = found.spins.len() as f64;
         let mean = |of: fn(&f64) -> f64| {

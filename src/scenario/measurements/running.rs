@@ -2,14 +2,14 @@
 
 use serde_json::Value;
 
-use super::{About, Measure, Observed};
+use super::{About, Measure, Observed, Quantity};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 
 /// A measurement during a run, whatever it measures: the methods of [`Measure`].
 pub trait Running: Send + Sync {
     fn check(&self) -> Result<(), Problem>;
-    fn names(&self) -> Vec<(String, &'static str)>;
+    fn quantities(&self) -> Vec<Quantity>;
     fn places(&self) -> Vec<(&'static str, Observed)>;
     fn about(&self) -> About;
     fn observe(&mut self, simulation: &Simulation);
@@ -30,8 +30,8 @@ impl<M: Measure> Running for (M, M::Seen) {
         self.0.check()
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        self.0.names()
+    fn quantities(&self) -> Vec<Quantity> {
+        self.0.quantities()
     }
 
     fn places(&self) -> Vec<(&'static str, Observed)> {

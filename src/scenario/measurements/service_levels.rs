@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::window::Window;
-use super::{About, Measure, Observed};
+use super::{About, Measure, Observed, Quantity};
 use crate::analysis::service::{LEVELS, Levels};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -42,14 +42,17 @@ impl Measure for ServiceLevels {
         self.window.check("service_levels")
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
+    fn quantities(&self) -> Vec<Quantity> {
         let name = self.name.as_deref().unwrap_or(NAME);
-        let kinds = ["walkway", "queue"].into_iter();
-        let names = kinds.flat_map(|kind| {
-            let levels = LEVELS.into_iter();
-            levels.map(move |level| (format!("{name}_{kind}_{level}"), ""))
+        let kinds = [("walkway", "for walkways"), ("queue", "for queues")].into_iter();
+        let quantities = kinds.flat_map(|(kind, place)| {
+            LEVELS.into_iter().map(move |level| {
+                let letter = level.to_uppercase();
+                let meaning = format!("share of person-seconds at Fruin's level {letter} {place}");
+                Quantity::new(format!("{name}_{kind}_{level}"), "", &meaning)
+            })
         });
-        names.collect()
+        quantities.collect()
     }
 
     fn observe(&self, seen: &mut Levels, simulation: &Simulation) {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{About, Mean, Measure, Observed, is_due};
+use super::{About, Mean, Measure, Observed, Quantity, is_due};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::keys::limits::LONGEST_TIME;
@@ -41,9 +41,14 @@ impl Measure for SpeedByDensity {
         Ok(())
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let name = |low| (format!("speed_at_{low}_to_{}_per_m2", low + 1.0), "m/s");
-        self.bins.iter().map(name).collect()
+    fn quantities(&self) -> Vec<Quantity> {
+        let of = |&low: &f64| {
+            let high = low + 1.0;
+            let meaning =
+                format!("mean speed of agents at SPH densities from {low} to {high} P/m²");
+            Quantity::new(format!("speed_at_{low}_to_{high}_per_m2"), "m/s", &meaning)
+        };
+        self.bins.iter().map(of).collect()
     }
 
     fn about(&self) -> About {

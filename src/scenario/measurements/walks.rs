@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::window::walkable_area;
-use super::{Measure, Observed};
+use super::{Measure, Observed, Quantity};
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
@@ -95,16 +95,32 @@ impl Measure for Walks {
         })
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let name = |(what, unit)| (format!("{}_{what}", self.name()), unit);
+    fn quantities(&self) -> Vec<Quantity> {
         let values = [
-            ("agents", "agents"),
-            ("density_per_m2", "P/m²"),
-            ("speed_m_per_s", "m/s"),
-            ("flow_per_m_per_s", "P/(m s)"),
-            ("start_delay_secs", "s"),
+            ("agents", "agents", "agents that were there"),
+            (
+                "density_per_m2",
+                "P/m²",
+                "person-seconds there / (walkable area · time)",
+            ),
+            (
+                "speed_m_per_s",
+                "m/s",
+                "meters walked there / person-seconds there",
+            ),
+            (
+                "flow_per_m_per_s",
+                "P/(m s)",
+                "meters walked there, in all directions / (walkable area · time)",
+            ),
+            (
+                "start_delay_secs",
+                "s",
+                "whole run: longest time from entry and pre-movement time until an agent walks at a quarter of its \
+                 preferred speed for a second",
+            ),
         ];
-        values.into_iter().map(name).collect()
+        Quantity::all(self.name(), &values)
     }
 
     fn observe(&self, seen: &mut Seen, simulation: &Simulation) {

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::window::{MOST_MASS, Samples, body_mass};
-use super::{About, Measure, Observed};
+use super::{About, Measure, Observed, Quantity};
 use crate::analysis::wall_forces::{CellForce, WallForces as Seen};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -58,17 +58,28 @@ impl Measure for WallForces {
         self.samples.check("wall_forces")
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let name = |(what, unit)| (format!("{}_{what}", self.name()), unit);
+    fn quantities(&self) -> Vec<Quantity> {
         let values = [
-            ("max_n_per_m", "N/m"),
-            ("max_at_secs", "s"),
-            ("max_x_m", "m"),
-            ("max_y_m", "m"),
-            ("above_3000_n_per_m_secs", "s"),
-            ("above_3000_n_per_m_m", "m"),
+            (
+                "max_n_per_m",
+                "N/m",
+                "largest force per meter of wall, mean over 1 m of outline, at any sample",
+            ),
+            ("max_at_secs", "s", "when it was largest"),
+            ("max_x_m", "m", "where it was largest: x"),
+            ("max_y_m", "m", "where it was largest: y"),
+            (
+                "above_3000_n_per_m_secs",
+                "s",
+                "longest time without a break with more than 3 kN/m somewhere",
+            ),
+            (
+                "above_3000_n_per_m_m",
+                "m",
+                "most meters of wall above 3 kN/m at one time",
+            ),
         ];
-        values.into_iter().map(name).collect()
+        Quantity::all(self.name(), &values)
     }
 
     fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::{Measure, Observed, is_due};
+use super::{Measure, Observed, Quantity, is_due};
 use crate::analysis::wave::{self, Run, SpaceTime, Strip};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -100,11 +100,19 @@ impl Measure for Wave {
         }
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
+    fn quantities(&self) -> Vec<Quantity> {
         vec![
-            ("wave_speed_m_per_s".to_owned(), "m/s"),
-            ("wave_amplitude_m_per_s".to_owned(), "m/s"),
-            ("wave_reflection".to_owned(), ""),
+            Quantity::new("wave_speed_m_per_s", "m/s", "speed of the crest along x"),
+            Quantity::new(
+                "wave_amplitude_m_per_s",
+                "m/s",
+                "amplitude of its velocity before the obstacle",
+            ),
+            Quantity::new(
+                "wave_reflection",
+                "",
+                "amplitude after the reflection / amplitude before it",
+            ),
         ]
     }
 

@@ -71,6 +71,11 @@ impl Draft {
         &self.need
     }
 
+    /// Whether agents behave by the default profile: the scenario gives none.
+    pub fn has_default_profile(&self) -> bool {
+        self.keys.profile.is_none()
+    }
+
     /// The trajectories from which it begins, and the time in them at which it does, seconds; `None` if it names no
     /// file.
     ///

@@ -2,6 +2,8 @@
 
 mod cause;
 
+use std::cmp::Ordering;
+
 use serde::{Deserialize, Serialize};
 
 use super::{Measure, Observed, is_due};
@@ -39,6 +41,19 @@ pub(super) enum Aim {
     Place(u16),
     /// A direction.
     Direction(Vector),
+}
+
+impl Aim {
+    /// An order of aims, in which equal ones are neighbors.
+    pub(super) fn order(&self, other: &Self) -> Ordering {
+        let key = |aim: &Self| match *aim {
+            Self::Place(place) => (0, f64::from(place), 0.0),
+            Self::Goal(p) => (1, p.x, p.y),
+            Self::Direction(p) => (2, p.x, p.y),
+        };
+        let ((a, x, y), (b, u, v)) = (key(self), key(other));
+        a.cmp(&b).then(x.total_cmp(&u)).then(y.total_cmp(&v))
+    }
 }
 
 /// The headway of an agent in the last seconds.
@@ -144,6 +159,14 @@ fn watch(seen: &mut Vec<Option<Headway>>, simulation: &Simulation) {
 }
 
 impl Headway {
+    /// What the agent walks to, and how far it has to go, meters; `None` without a way, or if it walks in a direction.
+    pub(super) fn way(&self) -> Option<(Aim, f64)> {
+        let is_direction = matches!(self.aim, Aim::Direction(_));
+        self.left
+            .filter(|_| !is_direction)
+            .map(|left| (self.aim, left))
+    }
+
     /// That of an agent at `p` that begins to walk to `aim`.
     fn begin(simulation: &Simulation, p: Vector, aim: Aim) -> Self {
         Self {

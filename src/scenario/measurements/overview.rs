@@ -1,0 +1,168 @@
+//! What every run observes beside its measurements: the highest density, and the longest queues.
+
+use serde::{Deserialize, Serialize};
+
+use super::is_due;
+use super::stuck::{Aim, Headway};
+use crate::engine::journeys::Kind;
+use crate::engine::simulation::Simulation;
+
+/// An agent stands in a queue if it walks slower than this part of its preferred speed.
+pub const SLOW: f64 = 0.5;
+/// A queue ends where the next agent is farther behind than this along the way, meters.
+pub const GAP: f64 = 3.0;
+/// The fewest agents in a queue.
+const FEWEST: u32 = 2;
+/// Time between two observations of the queues, seconds.
+const EVERY: f64 = 1.0;
+
+/// The highest density of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct HighestDensity {
+    /// The SPH density at an agent, P/m².
+    pub density_per_m2: f64,
+    /// When, seconds.
+    pub at_secs: f64,
+    /// The position of the agent, meters.
+    pub at: [f64; 2],
+    /// Its id.
+    pub agent: u32,
+}
+
+/// The longest queue before a place or a goal.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LongestQueue {
+    /// The name of the place, or the position of the goal.
+    pub before: String,
+    /// The largest number of agents at one time.
+    pub agents: u32,
+    /// The first time with this number, seconds.
+    pub at_secs: f64,
+}
+
+/// The longest queue so far before one aim.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Queue {
+    aim: Aim,
+    agents: u32,
+    at_secs: f64,
+}
+
+/// The highest density and the longest queues so far.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Overview {
+    highest: Option<HighestDensity>,
+    queues: Vec<Queue>,
+}
+
+impl Overview {
+    /// Observes an evaluated frame with the headways of its agents, by id: densities in coarse frames, if forces need
+    /// them, and queues once per second.
+    pub fn observe(&mut self, headways: &[Option<Headway>], simulation: &Simulation) {
+        if simulation.needs().density && simulation.frame().clock.is_coarse() {
+            self.observe_density(simulation);
+        }
+        if is_due(simulation, [0.0, f64::INFINITY], EVERY) {
+            self.observe_queues(headways, simulation);
+        }
+    }
+
+    /// The highest density; `None` if no force needs densities.
+    pub fn highest(&self) -> Option<HighestDensity> {
+        self.highest
+    }
+
+    /// The longest queue before each place and goal, the longest one first.
+    pub fn longest(&self, simulation: &Simulation) -> Vec<LongestQueue> {
+        let places = &simulation.scene().journeys.places;
+        let name = |aim: Aim| match aim {
+            Aim::Place(place) => places[usize::from(place)].name.clone(),
+            Aim::Goal(goal) => format!("({}, {})", goal.x, goal.y),
+            Aim::Direction(_) => String::new(),
+        };
+        let mut queues: Vec<&Queue> = self.queues.iter().collect();
+        queues.sort_by_key(|queue| std::cmp::Reverse(queue.agents)); // stable
+        let longest = queues.into_iter().map(|queue| LongestQueue {
+            before: name(queue.aim),
+            agents: queue.agents,
+            at_secs: queue.at_secs,
+        });
+        longest.collect()
+    }
+
+    fn observe_density(&mut self, simulation: &Simulation) {
+        let frame = simulation.frame();
+        let densities = &frame.fields.density;
+        let mut most = self.highest.map_or(0.0, |highest| highest.density_per_m2);
+        let mut found = None;
+        for i in frame.agents.present() {
+            if densities[i] > most {
+                (most, found) = (densities[i], Some(i));
+            }
+        }
+        if let Some(i) = found {
+            self.highest = Some(HighestDensity {
+                density_per_m2: most,
+                at_secs: frame.clock.time(),
+                at: frame.agents.position[i].into(),
+                agent: frame.agents.id[i],
+            });
+        }
+    }
+
+    fn observe_queues(&mut self, headways: &[Option<Headway>], simulation: &Simulation) {
+        let (frame, scene) = (simulation.frame(), simulation.scene());
+        let (agents, now) = (frame.agents, frame.clock.time());
+        // The aims of slow agents, each with its distances.
+        let mut slow: Vec<(Aim, f64)> = Vec::new();
+        for i in agents.present() {
+            let headway = headways.get(agents.id[i] as usize).and_then(Option::as_ref);
+            if let Some(way) = headway.and_then(Headway::way)
+                && agents.velocity[i].norm() < SLOW * scene.pace(agents, i, now)
+            {
+                slow.push(way);
+            }
+        }
+        slow.sort_by(|(aim, left), (other, way)| aim.order(other).then(left.total_cmp(way)));
+        for line in slow.chunk_by(|(aim, _), (other, _)| aim == other) {
+            let (aim, first) = line[0];
+            // A place is the door; a goal may lie far behind it.
+            let mut before = match aim {
+                Aim::Place(_) => 0.0,
+                _ => first,
+            };
+            let close = line.iter().take_while(|&&(_, left)| {
+                let is_near = left - before <= GAP;
+                before = left;
+                is_near
+            });
+            self.notice(aim, close.count() as u32, now);
+        }
+        let places = scene
+            .journeys
+            .places
+            .iter()
+            .zip(&simulation.progress().places);
+        for (k, (place, state)) in places.enumerate() {
+            if matches!(place.kind, Kind::Queue(_)) {
+                self.notice(Aim::Place(k as u16), state.longest, now);
+            }
+        }
+    }
+
+    fn notice(&mut self, aim: Aim, agents: u32, at_secs: f64) {
+        if agents < FEWEST {
+            return;
+        }
+        let queue = Queue {
+            aim,
+            agents,
+            at_secs,
+        };
+        match self.queues.iter_mut().find(|queue| queue.aim == aim) {
+            Some(longest) if longest.agents < agents => *longest = queue,
+            Some(_) => {}
+            None => self.queues.push(queue),
+        }
+    }
+}
