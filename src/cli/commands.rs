@@ -7,8 +7,8 @@ use clap_complete::Shell;
 
 use super::arguments::{ResumeOptions, RunOptions};
 use super::{
-    accuracy, bench, calibrate, compare, draw, estimate, inspect, measure, reproduce, stress,
-    suite, sweep,
+    accuracy, bench, calibrate, compare, draw, estimate, inspect, measure, report, reproduce,
+    stress, suite, sweep,
 };
 
 const EXAMPLES: &str = "\
@@ -21,6 +21,7 @@ Examples:
   sandbox run my_station.json --geometry station.geojson
   sandbox inspect evacuation --agent 17 --at 15 --json
   sandbox draw my_station.json --paths 'east exit' --out ways.png
+  sandbox report my_station.json --out station.pdf
   sandbox sweep study.json --threads 2
   sandbox bench scaling --largest 100000
   sandbox list --settings";
@@ -72,6 +73,9 @@ pub enum Command {
     /// Draw a scenario, trajectories or a recording, as a picture or an animation
     #[command(after_help = "Example: sandbox draw scenarios/station.json --out station.png")]
     Draw(draw::DrawOptions),
+    /// Write the document that is handed in with a run or a study: plan, results with definitions, pictures, limits
+    #[command(after_help = report::EXAMPLES)]
+    Report(report::ReportOptions),
     /// Regenerate the paper's tables and figures (§6) and compare them with the published ones
     #[command(
         after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about()),

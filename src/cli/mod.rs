@@ -32,6 +32,7 @@ mod estimate;
 mod inspect;
 mod list;
 mod measure;
+mod report;
 mod reproduce;
 mod stress;
 mod suite;
@@ -97,6 +98,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Resume(options) => drive::resume(&options),
         Command::Inspect(options) => inspect::run(&options),
         Command::Draw(options) => draw::run(&options),
+        Command::Report(options) => report::run(&options),
         Command::Reproduce(options) => reproduce::run(&options),
         Command::Bench(options) => bench::run(&options),
         Command::Accuracy(options) => accuracy::run(&options),

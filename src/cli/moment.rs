@@ -1,11 +1,13 @@
-//! A scenario at one moment, for commands that look at it.
+//! A scenario at one moment or at its end, for commands that look at it.
 
 use super::arguments::SceneOptions;
 use super::failure::Failure;
 use super::inputs::scenario as read;
+use super::interrupt::Interrupt;
 use super::watch::Progress;
 use crate::engine::simulation::Simulation;
 use crate::runs::case::Source;
+use crate::runs::drive::{End, Observer, Run};
 use crate::runs::outputs::Outputs;
 use crate::scenario::Scenario;
 
@@ -22,6 +24,23 @@ pub fn scenario(
     match at <= scenario.duration_secs {
         true => Ok(scenario),
         false => read(&source, scene, Some(("--at", at)), writing, outputs),
+    }
+}
+
+/// The run of a scenario to its end.
+pub fn to_the_end(scenario: Scenario) -> Result<Run, Failure> {
+    let mut run = Run::new(scenario)?;
+    let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
+    let interrupted = || interrupt.exit_code().is_some();
+    let progress = Progress::new(run.scenario.duration_secs);
+    let mut observers: Vec<Box<dyn Observer<Failure> + Send>> = vec![Box::new(progress)];
+    let end = rayon::scope(|_| run.drive(&mut observers, interrupted))?;
+    match (interrupt.exit_code(), end) {
+        (Some(exit_code), End::Interrupted) => {
+            let time = run.simulation.frame().clock.time();
+            Err(Failure::Interrupted { time, exit_code })
+        }
+        _ => Ok(run),
     }
 }
 

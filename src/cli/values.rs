@@ -188,6 +188,18 @@ pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
+/// A path with the extension of a report.
+pub fn document() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| {
+        let extension = path.extension().unwrap_or_default();
+        let mut known = ["html", "pdf"].iter();
+        match known.any(|known| extension.eq_ignore_ascii_case(known)) {
+            true => Ok(path),
+            false => Err("a report's name must end in .html or .pdf"),
+        }
+    })
+}
+
 /// The width of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Width {

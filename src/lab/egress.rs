@@ -58,7 +58,10 @@ impl Egress {
     /// The people in trajectories: they leave when they are last seen. Those in the last frame have not left.
     pub fn of_tracks(tracks: &Tracks) -> Self {
         let last = tracks.frames.last().copied().unwrap_or_default();
-        let mut ends: Vec<i64> = tracks.people().map(|frames| frames[1]).collect();
+        let people = 0..tracks.ids.len();
+        let ends =
+            people.filter_map(|p| Some(tracks.frame_of(*tracks.rows_of(p).last()? as usize)));
+        let mut ends: Vec<i64> = ends.collect();
         let entered = ends.len() as u32;
         ends.retain(|&end| end < last);
         ends.sort_unstable();
@@ -88,7 +91,8 @@ impl Egress {
             share: 100.0 * times.len() as f64 / all.len().max(1) as f64,
         };
         let exits = self.exits.iter();
-        let exits = exits.map(|(name, times)| (name.as_str(), times.as_slice(), times.len() as u32));
+        let exits =
+            exits.map(|(name, times)| (name.as_str(), times.as_slice(), times.len() as u32));
         let whole = (ALL, all.as_slice(), self.entered);
         let rows: Vec<Row> = match self.exits.len() {
             1 => [whole].map(row).into(),

@@ -3,7 +3,8 @@
 //! ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]), run time against error ([`accuracy`]),
 //! cases with known answers and scenes of experiments ([`suite`]), and the search for parameters that reproduce them
 //! ([`calibrate`]). [`measure`] computes densities, fields, fundamental diagrams and flows of any trajectory;
-//! [`differences`] compares two results. Their pictures share [`gallery`] and
+//! [`differences`] compares two results, [`egress`] shows how people leave, and [`report`] makes the document that is
+//! handed in. Their pictures share [`gallery`] and
 //! [`mod@curves`].
 
 pub mod error;
@@ -17,6 +18,8 @@ pub mod machine;
 pub mod measure;
 
 pub mod differences;
+
+pub mod egress;
 
 pub mod curves;
 
@@ -35,3 +38,5 @@ pub mod stress;
 pub mod accuracy;
 
 pub mod calibrate;
+
+pub mod report;

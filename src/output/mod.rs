@@ -18,3 +18,5 @@ pub mod trajectory;
 pub mod plot;
 
 pub mod picture;
+
+pub mod document;

@@ -62,6 +62,9 @@ pub struct DrawOptions {
     /// Show the ways to an exit, waypoint, waiting area or queue, or to a point; may be repeated
     #[arg(long, value_name = "PLACE|X,Y", allow_hyphen_values = true)]
     pub paths: Vec<String>,
+    /// Show the number of people out over time, by exit, and print the table: a scenario is run to its end
+    #[arg(long, conflicts_with_all = ["at", "from", "color", "range", "trails", "field", "paths"])]
+    pub egress: bool,
     /// Width of the picture in millimeters, or in pixels: 1200px [default: 180]
     #[arg(long, value_name = "MM|px", value_parser = width)]
     pub width: Option<Width>,

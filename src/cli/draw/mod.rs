@@ -1,8 +1,9 @@
-//! `sandbox draw`: pictures and animations of a run, without a viewer.
+//! `sandbox draw`: pictures and animations of a run, without a viewer, and the curve of the people who leave.
 //!
 //! A run is a scenario, which is simulated until then, a trajectory file or a recording: [`frames::Frames`].
 
 mod arguments;
+mod egress;
 mod frames;
 mod look;
 mod paths;
@@ -92,6 +93,10 @@ pub fn run(options: &DrawOptions) -> Result<(), Failure> {
         let stem = Path::new(&options.run).file_stem().unwrap_or_default();
         Path::new(stem).with_added_extension("svg")
     });
+    if options.egress {
+        check_format(&out, false)?;
+        return egress::draw(options, &out, outputs);
+    }
     let times = Times::of(options, &out)?;
     check_format(&out, times.is_animation)?;
     if times.is_animation {

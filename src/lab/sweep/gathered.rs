@@ -149,7 +149,7 @@ impl<'a> Gathered<'a> {
     }
 
     /// The names of all numbers that are averaged over seeds.
-    pub(super) fn numbers(&self) -> Vec<String> {
+    pub(in crate::lab) fn numbers(&self) -> Vec<String> {
         let mut names = self.metrics();
         names.extend(["evacuated", "time_secs"].map(str::to_owned));
         distinct(names)

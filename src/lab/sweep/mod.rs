@@ -44,6 +44,7 @@ pub(in crate::lab) use gathered::number;
 pub use gathered::{Combination, Gathered, State};
 pub use pictures::{Drawing, DrawingError};
 pub(in crate::lab) use plan::{Changes, DataFile, PROFILE, check_keys};
+pub(in crate::lab) use readable::readable;
 pub(in crate::lab) use seeds::Seeds;
 pub use shard::Shard;
 pub(in crate::lab) use study::{FOLDER, check_name};

@@ -14,6 +14,7 @@ mod layout;
 mod marks;
 mod narrow;
 mod output;
+mod pages;
 mod pdf;
 mod pixels;
 mod print;
@@ -21,7 +22,9 @@ mod print;
 pub use animation::Animation;
 pub use axis::Axis;
 pub use draw::{label_lines, label_width};
+pub use font::{LINE, lines as text_lines, width_of as text_width};
 pub use output::PlotError;
+pub use pages::Pages;
 pub use print::{PAPER_DPI, Print};
 
 use crate::output::colors::{ColorMap, Rgb};

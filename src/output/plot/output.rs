@@ -15,7 +15,7 @@ use super::{Print, Sheet, draw, font};
 /// Units per point in an SVG.
 const SVG_SCALE: u32 = 4;
 /// Pixels are drawn this many times larger and then scaled down, for smooth edges.
-const FINER: u32 = 2;
+pub(super) const FINER: u32 = 2;
 /// The most pixels of a picture, before it is scaled down.
 const MOST_PIXELS: f64 = 400e6;
 
@@ -98,7 +98,11 @@ impl Sheet {
         Layout::new(&self.for_print(print), print).panel
     }
 
-    fn svg(&self, print: &Print) -> Result<Vec<u8>, PlotError> {
+    /// The sheet as an SVG.
+    ///
+    /// # Errors
+    /// It cannot be drawn.
+    pub fn svg(&self, print: &Print) -> Result<Vec<u8>, PlotError> {
         let sheet = self.for_print(print);
         let layout = Layout::new(&sheet, print);
         let size = layout
@@ -164,7 +168,7 @@ impl Sheet {
         pdf.finish().map_err(PlotError::Drawing)
     }
 
-    fn draw<DB: DrawingBackend>(
+    pub(super) fn draw<DB: DrawingBackend>(
         &self,
         layout: &Layout,
         print: &Print,

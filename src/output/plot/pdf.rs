@@ -1,4 +1,4 @@
-//! Draws in a PDF: lines, areas, text in an embedded font, images. One page as large as the sheet.
+//! Draws in a PDF: lines, areas, text in an embedded font, images, on pages of the same size.
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
@@ -19,14 +19,13 @@ use super::font;
 
 const CATALOG: Ref = Ref::new(1);
 const PAGES: Ref = Ref::new(2);
-const PAGE: Ref = Ref::new(3);
-const CONTENT: Ref = Ref::new(4);
-const FONT: Ref = Ref::new(5);
-const CID_FONT: Ref = Ref::new(6);
-const DESCRIPTOR: Ref = Ref::new(7);
-const FONT_FILE: Ref = Ref::new(8);
-const CMAP: Ref = Ref::new(9);
-const FIRST_IMAGE: i32 = 10;
+const FONT: Ref = Ref::new(3);
+const CID_FONT: Ref = Ref::new(4);
+const DESCRIPTOR: Ref = Ref::new(5);
+const FONT_FILE: Ref = Ref::new(6);
+const CMAP: Ref = Ref::new(7);
+/// The first page; its content and then the other pages with theirs follow, then the images.
+const FIRST_PAGE: i32 = 8;
 const FONT_NAME: Name = Name(b"F");
 /// The name of the font, which is a part of DejaVu Sans.
 const BASE_FONT: Name = Name(b"SANDBX+DejaVuSans");
@@ -37,13 +36,17 @@ const ARC: f32 = 0.552_285;
 
 /// A PDF while it is drawn.
 pub struct Pdf {
-    /// Width and height, points.
+    /// Width and height of a page, points.
     size: [f64; 2],
+    /// Width and height of what is drawn now, points.
+    area: [f64; 2],
     /// Units per point.
     scale: f64,
     /// Images are enlarged by this factor in both directions.
     finer: u32,
-    content: Content,
+    pages: Vec<Content>,
+    /// The page on which is drawn.
+    page: usize,
     images: Vec<RgbImage>,
     remapper: GlyphRemapper,
     /// The letter and the width, in thousandths of an em, of each glyph by its number in the file.
@@ -57,21 +60,63 @@ type Done = Result<(), DrawingErrorKind<Infallible>>;
 
 impl Pdf {
     pub fn new(size: [f64; 2], scale: f64, finer: u32) -> Self {
-        let mut content = Content::new();
-        let unit = (1.0 / scale) as f32;
-        // Units with y down, as of all backends.
-        content.transform([unit, 0.0, 0.0, -unit, 0.0, size[1] as f32]);
-        content.set_line_join(LineJoinStyle::RoundJoin);
-        content.set_line_cap(LineCapStyle::ButtCap);
-        Self {
+        let mut pdf = Self {
             size,
+            area: size,
             scale,
             finer,
-            content,
+            pages: Vec::new(),
+            page: 0,
             images: Vec::new(),
             remapper: GlyphRemapper::new(),
             letters: BTreeMap::new(),
-        }
+        };
+        pdf.begin_page();
+        pdf
+    }
+
+    /// Adds a page, on which is drawn from now on.
+    pub fn begin_page(&mut self) {
+        let mut content = Content::new();
+        let unit = (1.0 / self.scale) as f32;
+        // Units with y down, as of all backends.
+        content.transform([unit, 0.0, 0.0, -unit, 0.0, self.size[1] as f32]);
+        content.set_line_join(LineJoinStyle::RoundJoin);
+        content.set_line_cap(LineCapStyle::ButtCap);
+        self.page = self.pages.len();
+        self.pages.push(content);
+    }
+
+    /// The number of pages.
+    pub fn count(&self) -> usize {
+        self.pages.len()
+    }
+
+    /// Draws on page `k`, from 0, from now on.
+    pub fn go_to(&mut self, k: usize) {
+        self.page = k.min(self.pages.len() - 1);
+    }
+
+    /// Draws something of this size with its upper left corner at a place, points.
+    pub fn within<R>(
+        &mut self,
+        [x, y]: [f64; 2],
+        size: [f64; 2],
+        draw: impl FnOnce(&mut Self) -> R,
+    ) -> R {
+        let [right, down] = [x, y].map(|shift| (shift * self.scale) as f32);
+        self.content().save_state();
+        self.content().transform([1.0, 0.0, 0.0, 1.0, right, down]);
+        self.area = size;
+        let result = draw(self);
+        self.area = self.size;
+        self.content().restore_state();
+        result
+    }
+
+    /// What is on the page on which is drawn.
+    fn content(&mut self) -> &mut Content {
+        &mut self.pages[self.page]
     }
 
     pub fn backend(&mut self) -> Backend<'_> {
@@ -82,24 +127,28 @@ impl Pdf {
     pub fn finish(self) -> Result<Vec<u8>, String> {
         let mut pdf = pdf_writer::Pdf::new();
         pdf.catalog(CATALOG).pages(PAGES);
-        pdf.pages(PAGES).kids([PAGE]).count(1);
+        let count = self.pages.len() as i32;
+        let place = |k: i32| Ref::new(FIRST_PAGE + 2 * k);
+        pdf.pages(PAGES).kids((0..count).map(place)).count(count);
         let images = (0..).zip(&self.images);
         let images: Vec<_> = images
-            .map(|(k, image)| (format!("I{k}"), Ref::new(FIRST_IMAGE + k), image))
+            .map(|(k, image)| (format!("I{k}"), Ref::new(FIRST_PAGE + 2 * count + k), image))
             .collect();
-        let mut page = pdf.page(PAGE);
         let [width, height] = self.size.map(|length| length as f32);
-        page.media_box(Rect::new(0.0, 0.0, width, height));
-        page.parent(PAGES).contents(CONTENT);
-        let mut resources = page.resources();
-        resources.fonts().pair(FONT_NAME, FONT);
-        let mut objects = resources.x_objects();
-        for (name, place, _) in &images {
-            objects.pair(Name(name.as_bytes()), *place);
+        for k in 0..count {
+            let mut page = pdf.page(place(k));
+            page.media_box(Rect::new(0.0, 0.0, width, height));
+            page.parent(PAGES).contents(place(k).next());
+            let mut resources = page.resources();
+            resources.fonts().pair(FONT_NAME, FONT);
+            let mut objects = resources.x_objects();
+            for (name, place, _) in &images {
+                objects.pair(Name(name.as_bytes()), *place);
+            }
+            objects.finish();
+            resources.finish();
+            page.finish();
         }
-        objects.finish();
-        resources.finish();
-        page.finish();
         for (_, place, image) in images {
             let data = compress_to_vec_zlib(image, LEVEL);
             let mut object = pdf.image_xobject(place, &data);
@@ -111,8 +160,11 @@ impl Pdf {
             object.color_space().device_rgb();
         }
         self.write_font(&mut pdf)?;
-        let content = compress_to_vec_zlib(&self.content.finish(), LEVEL);
-        pdf.stream(CONTENT, &content).filter(Filter::FlateDecode);
+        for (k, content) in (0..).zip(self.pages) {
+            let content = compress_to_vec_zlib(&content.finish(), LEVEL);
+            pdf.stream(place(k).next(), &content)
+                .filter(Filter::FlateDecode);
+        }
         Ok(pdf.finish())
     }
 
@@ -167,13 +219,13 @@ impl Pdf {
 
     fn fill_color(&mut self, color: BackendColor) {
         let [r, g, b] = parts(color);
-        self.content.set_fill_rgb(r, g, b);
+        self.content().set_fill_rgb(r, g, b);
     }
 
     fn stroke_style<S: BackendStyle>(&mut self, style: &S) {
         let [r, g, b] = parts(style.color());
-        self.content.set_stroke_rgb(r, g, b);
-        self.content.set_line_width(style.stroke_width() as f32);
+        self.content().set_stroke_rgb(r, g, b);
+        self.content().set_line_width(style.stroke_width() as f32);
     }
 
     /// Begins a path through points; false if there are fewer than two.
@@ -182,13 +234,13 @@ impl Pdf {
         for (x, y) in path {
             let (x, y) = (x as f32, y as f32);
             match count {
-                0 => self.content.move_to(x, y),
-                _ => self.content.line_to(x, y),
+                0 => self.content().move_to(x, y),
+                _ => self.content().line_to(x, y),
             };
             count += 1;
         }
         if count == 1 {
-            self.content.end_path();
+            self.content().end_path();
         }
         count > 1
     }
@@ -219,7 +271,7 @@ impl DrawingBackend for Backend<'_> {
 
     fn get_size(&self) -> (u32, u32) {
         let units = |points: f64| (points * self.0.scale).round() as u32;
-        self.0.size.map(units).into()
+        self.0.area.map(units).into()
     }
 
     fn ensure_prepared(&mut self) -> Done {
@@ -233,7 +285,7 @@ impl DrawingBackend for Backend<'_> {
     fn draw_pixel(&mut self, (x, y): BackendCoord, color: BackendColor) -> Done {
         self.0.fill_color(color);
         self.0
-            .content
+            .content()
             .rect(x as f32, y as f32, 1.0, 1.0)
             .fill_nonzero();
         Ok(())
@@ -270,7 +322,7 @@ impl DrawingBackend for Backend<'_> {
         if !is_clear(style.color()) {
             self.0.stroke_style(style);
             if self.0.path(path) {
-                self.0.content.stroke();
+                self.0.content().stroke();
             }
         }
         Ok(())
@@ -291,7 +343,7 @@ impl DrawingBackend for Backend<'_> {
             false => self.0.stroke_style(style),
         }
         let (x, y, r) = (x as f32, y as f32, radius as f32);
-        let content = &mut self.0.content;
+        let content = self.0.content();
         content.move_to(x + r, y);
         let mut end = [1.0, 0.0];
         for _ in 0..4 {
@@ -318,7 +370,7 @@ impl DrawingBackend for Backend<'_> {
         if !is_clear(style.color()) {
             self.0.fill_color(style.color());
             if self.0.path(corners) {
-                self.0.content.fill_even_odd();
+                self.0.content().fill_even_odd();
             }
         }
         Ok(())
@@ -336,7 +388,7 @@ impl DrawingBackend for Backend<'_> {
         let [right, up] = [[1.0, 0.0], [0.0, -1.0]].map(|way| font::turned(&transform, way));
         let matrix = [right[0], right[1], up[0], up[1], x, y].map(|number| number as f32);
         self.0.fill_color(style.color());
-        let content = &mut self.0.content;
+        let content = self.0.content();
         content.begin_text().set_font(FONT_NAME, em as f32);
         content
             .set_text_matrix(matrix)
@@ -357,7 +409,7 @@ impl DrawingBackend for Backend<'_> {
         let [w, h] = [width, height].map(|side| side.div_ceil(self.0.finer));
         let name = format!("I{}", self.0.images.len());
         self.0.images.push(imageops::thumbnail(&image, w, h));
-        let content = &mut self.0.content;
+        let content = self.0.content();
         let [x, y, width, height] = [x, y, width as i32, height as i32].map(|k| k as f32);
         content.save_state();
         content.transform([width, 0.0, 0.0, -height, x, y + height]);

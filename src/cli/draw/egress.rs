@@ -1,0 +1,64 @@
+//! `sandbox draw --egress`: the number of people out over time.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::{DrawOptions, extension, print, refuse_settings};
+use crate::cli::failure::Failure;
+use crate::cli::inputs::{scenario, tracks};
+use crate::cli::moment;
+use crate::cli::terminal::tell;
+use crate::lab::egress::Egress;
+use crate::runs::case::Source;
+use crate::runs::outputs::{Manner, Outputs};
+use crate::scenario::trajectories::{ReadOptions, Unit};
+
+/// Draws the curve, and prints the table.
+pub fn draw(options: &DrawOptions, out: &Path, mut outputs: Outputs) -> Result<(), Failure> {
+    outputs.writes("--out", out, Manner::InPlace);
+    let path = Path::new(&options.run);
+    let (title, egress) = match extension(path).as_str() {
+        "rrd" => {
+            return Err(Failure::Input(format!(
+                "--egress: {} is a recording, which does not say who has left; give the scenario or its trajectories",
+                options.run
+            )));
+        }
+        "sqlite" | "db" | "txt" | "csv" | "h5" | "hdf5" => {
+            refuse_settings(options, &options.scene)?;
+            outputs.reads("the trajectories", path);
+            outputs.check()?;
+            let read = ReadOptions {
+                unit: options.unit.as_deref().and_then(Unit::named),
+                fps: options.trajectory_fps,
+            };
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            (stem.into_owned(), Egress::of_tracks(&tracks(path, &read)?))
+        }
+        _ => simulated(options, outputs)?,
+    };
+    if egress.exits.iter().all(|(_, times)| times.is_empty()) {
+        let run = &options.run;
+        return Err(Failure::Input(format!("--egress: nobody leaves {run}")));
+    }
+    let print = print(options, false);
+    egress.sheet(&title).save_as(out, &print)?;
+    let file = out.display().to_string();
+    let exits = egress.exits.iter();
+    let exits = exits.map(|(name, times)| json!({"exit": name, "secs": times}));
+    tell(
+        options.scene.program.json,
+        || json!({"file": file, "entered": egress.entered, "exits": exits.collect::<Vec<_>>()}),
+        || format!("{}{file}: people out over time\n", egress.table().text()),
+    )
+}
+
+/// A scenario to its end.
+fn simulated(options: &DrawOptions, mut outputs: Outputs) -> Result<(String, Egress), Failure> {
+    let source = Source::named(&options.run);
+    let whole = scenario(&source, &options.scene, None, 0, &mut outputs)?;
+    outputs.check()?;
+    let run = moment::to_the_end(whole)?;
+    Ok((run.scenario.name.clone(), Egress::of(&run.simulation)))
+}

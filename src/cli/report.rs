@@ -1,0 +1,231 @@
+//! `sandbox report`: the document that is handed in with a run or a study.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::arguments::{SceneOptions, use_threads};
+use super::failure::Failure;
+use super::inputs::scenario;
+use super::moment::to_the_end;
+use super::terminal::tell;
+use super::values::{document, seconds};
+use super::watch::Progress;
+use crate::lab::report::{Sources, moments, of_run, of_study, pictures};
+use crate::lab::sweep::{Gathered, Study};
+use crate::output::document::{Document, print};
+use crate::runs::case::Source;
+use crate::runs::outputs::{Manner, Outputs};
+use crate::runs::store::Store;
+use crate::runs::summary::Summary;
+use crate::scenario::measurements::Measurement;
+use crate::scenario::{Scenario, read_text};
+
+pub const EXAMPLES: &str = "\
+Examples:
+  sandbox report scenarios/office.json -o office.pdf
+  sandbox report scenarios/office.json --profile steer+sph --at 30 --at 60 -o office.html
+  sandbox sweep study.json && sandbox report study.json -o study.pdf";
+
+/// Keys that only studies have.
+const OF_STUDIES: [&str; 4] = ["scenario", "grid", "list", "seeds"];
+
+#[derive(Args)]
+pub struct ReportOptions {
+    /// A built-in scenario or a scenario file, which is simulated; or a study whose runs `sandbox sweep` has finished
+    #[arg(value_name = "RUN_OR_STUDY")]
+    pub run: String,
+    #[command(flatten)]
+    pub scene: SceneOptions,
+    /// The report (.html or .pdf) [default: the name of the run with .html, in the working directory]
+    #[arg(short, long, value_name = "FILE", value_parser = document())]
+    pub out: Option<PathBuf>,
+    /// Time at which the run ends, seconds [default: the scenario's duration]
+    #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = seconds)]
+    pub until: Option<f64>,
+    /// The time of a picture, seconds; may be repeated [default: the highest density, and when half of the agents had left]
+    #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = seconds)]
+    pub at: Vec<f64>,
+    /// The folder with the results of a study [default: the study's name]
+    #[arg(long, value_name = "DIR")]
+    pub results: Option<PathBuf>,
+}
+
+pub fn run(options: &ReportOptions) -> Result<(), Failure> {
+    let program = &options.scene.program;
+    use_threads(program.threads)?;
+    let out = options.out.clone().unwrap_or_else(|| {
+        let stem = Path::new(&options.run).file_stem().unwrap_or_default();
+        Path::new(stem).with_added_extension("html")
+    });
+    let mut outputs = Outputs::new(program.force);
+    outputs.writes("--out", &out, Manner::InPlace);
+    let report = match study(options)? {
+        Some(study) => of_results(&study, options, outputs)?,
+        None => of_scenario(options, outputs)?,
+    };
+    report.save(&out)?;
+    let file = out.display().to_string();
+    let (title, blocks) = (&report.title, report.blocks.len());
+    tell(
+        program.json,
+        || json!({"file": file, "title": title, "parts": blocks}),
+        || format!("{file}: {title}\n"),
+    )
+}
+
+/// The study, if it is one.
+fn study(options: &ReportOptions) -> Result<Option<Study>, Failure> {
+    let path = Path::new(&options.run);
+    let is_study = match path.exists() {
+        true => {
+            let text: Option<Value> = serde_json::from_str(&read_text(path)?).ok();
+            OF_STUDIES
+                .iter()
+                .any(|key| text.as_ref().is_some_and(|text| text.get(key).is_some()))
+        }
+        false => Source::shipped(&options.run).is_none() && path.extension().is_none(),
+    };
+    match is_study {
+        true => Ok(Some(Study::open(path, None)?)),
+        false => Ok(None),
+    }
+}
+
+fn of_results(
+    study: &Study,
+    options: &ReportOptions,
+    mut outputs: Outputs,
+) -> Result<Document, Failure> {
+    if words(options).len() > 1 || !options.at.is_empty() {
+        return Err(Failure::Input(format!(
+            "{}: a study has its own settings and no pictures; give its file, --results and --out alone",
+            options.run
+        )));
+    }
+    for path in study.inputs() {
+        outputs.reads("the study's", path);
+    }
+    outputs.check()?;
+    let folder = options.results.clone();
+    let folder = folder.unwrap_or_else(|| PathBuf::from(&study.name));
+    let store = Store::at(&folder);
+    if !store.is_begun() {
+        return Err(Failure::Input(format!(
+            "{}: contains no results; run `sandbox sweep {}` first, or give its folder with --results",
+            folder.display(),
+            options.run
+        )));
+    }
+    let gathered = Gathered::of(study, &store);
+    let command = format!("sandbox sweep {} --out {}", options.run, folder.display());
+    let report = format!(
+        "sandbox report {} --results {}",
+        options.run,
+        folder.display()
+    );
+    Ok(of_study(&gathered, [&command, &report])?)
+}
+
+fn of_scenario(options: &ReportOptions, mut outputs: Outputs) -> Result<Document, Failure> {
+    if let Some(results) = &options.results {
+        let reason = format!(
+            "--results {}: is for studies, not for scenarios",
+            results.display()
+        );
+        return Err(Failure::Input(reason));
+    }
+    let source = Source::named(&options.run);
+    let until = options.until.map(|secs| ("--until", secs));
+    let mut whole = scenario(&source, &options.scene, until, 0, &mut outputs)?;
+    outputs.check()?;
+    complete(&mut whole);
+    let run = to_the_end(whole)?;
+    let mut times = match options.at.is_empty() {
+        true => moments(&Summary::of(&run)),
+        false => [0.0]
+            .into_iter()
+            .chain(options.at.iter().copied())
+            .collect(),
+    };
+    times.sort_by(f64::total_cmp);
+    let progress = Progress::new(times.last().copied().unwrap_or_default());
+    let pictures = rayon::scope(|_| {
+        pictures(&run.scenario, &times, &print(), |simulation| {
+            progress.show(simulation)
+        })
+    })?;
+    let words = words(options);
+    let command = match &source {
+        Source::BuiltIn(_) => format!("sandbox {}", words.join(" ")),
+        Source::File(_) => format!("sandbox run {}", words.join(" ")),
+    };
+    let report = format!("sandbox report {}", words.join(" "));
+    Ok(of_run(
+        &run,
+        Sources {
+            command: &command,
+            report: &report,
+            pictures,
+        },
+    ))
+}
+
+/// Adds the measurements that every report has. They change no result.
+fn complete(scenario: &mut Scenario) {
+    let has = |is: fn(&Measurement) -> bool| scenario.measurements.iter().any(is);
+    let has_journeys = !scenario.scene.journeys.journeys.is_empty();
+    let wanted = [
+        (
+            "egress",
+            has_journeys && !has(|one| matches!(one, Measurement::Egress(_))),
+        ),
+        (
+            "exposure",
+            !has(|one| matches!(one, Measurement::Exposure(_))),
+        ),
+        (
+            "service_levels",
+            !has(|one| matches!(one, Measurement::ServiceLevels(_))),
+        ),
+    ];
+    for (name, _) in wanted.into_iter().filter(|(_, is_wanted)| *is_wanted) {
+        let keys = serde_json::from_value(json!({ name: {} }));
+        scenario.measurements.extend(keys.ok());
+    }
+}
+
+/// The scenario and its settings, as typed into a shell.
+fn words(options: &ReportOptions) -> Vec<String> {
+    let scene = &options.scene;
+    let seed = scene.seed.map(|seed| seed.to_string());
+    let until = options.until.map(|until| until.to_string());
+    let geometry = scene.geometry.as_ref();
+    let geometry = geometry.map(|path| path.display().to_string());
+    let given = [
+        ("--profile", scene.profile.clone()),
+        ("--seed", seed),
+        ("--preset", scene.preset.clone()),
+        ("--time-step", scene.time_step.clone()),
+        ("--geometry", geometry),
+        ("--until", until),
+    ];
+    let given = given
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, value?)));
+    let set = scene.set.iter().map(|value| ("--set", value.clone()));
+    let words = given
+        .chain(set)
+        .map(|(name, value)| format!("{name} {}", quoted(&value)));
+    [quoted(&options.run)].into_iter().chain(words).collect()
+}
+
+/// A word as a shell reads it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "+-=_./,:%".contains(c);
+    match word.chars().all(is_plain) && !word.is_empty() {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    }
+}

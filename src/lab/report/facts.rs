@@ -1,0 +1,148 @@
+//! Results with their definitions.
+
+use crate::output::document::Block;
+use crate::output::table::Table;
+use crate::runs::summary::Summary;
+use crate::scenario::measurements::{GAP, HEADWAY, Measurement, Quantity, SLOW, STUCK_AFTER};
+
+/// A result of a run, in words.
+pub struct Fact {
+    pub name: String,
+    pub value: String,
+    pub meaning: String,
+}
+
+impl Fact {
+    fn new(name: &str, value: String, meaning: impl Into<String>) -> Self {
+        Self {
+            name: name.to_owned(),
+            value,
+            meaning: meaning.into(),
+        }
+    }
+}
+
+/// A number that every run has: its name, unit and definition, and its value.
+type Number = (&'static str, &'static str, fn(&Summary) -> Option<f64>);
+
+/// The numbers of every run.
+pub const NUMBERS: [Number; 8] = [
+    ("entered", "agents that entered", |run| {
+        Some(f64::from(run.agents))
+    }),
+    ("left", "agents that reached their goal or exit", |run| {
+        Some(run.arrived as f64)
+    }),
+    ("remain", "agents that are there at the end", |run| {
+        Some(run.remaining as f64)
+    }),
+    (
+        "50 % [s]",
+        "when half of the agents that entered had left",
+        |run| run.t50_secs,
+    ),
+    (
+        "95 % [s]",
+        "when 95 % of the agents that entered had left",
+        |run| run.t95_secs,
+    ),
+    ("all [s]", "when all agents that entered had left", |run| {
+        run.t100_secs
+    }),
+    (
+        "highest density [P/m²]",
+        "the highest SPH density at an agent: the kernel of the model (Eq. 5) with a support radius of 1 m over the \
+         agent itself and the agents and walls around it; a person alone has 1.27 P/m². Observed in every coarse frame",
+        |run| run.highest_density.map(|highest| highest.density_per_m2),
+    ),
+    ("stuck", "agents at the end that make no headway", |run| {
+        Some(run.stuck as f64)
+    }),
+];
+
+/// A table of facts.
+pub fn table(facts: &[Fact]) -> Table {
+    Table::of(facts)
+        .column("result", |fact| fact.name.as_str())
+        .column("value", |fact| fact.value.as_str())
+        .column("definition", |fact| fact.meaning.as_str())
+        .table()
+}
+
+/// What is asked first about a run.
+pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
+    let number = |&(name, meaning, value): &Number| {
+        let digits = if name.contains('[') { 2 } else { 0 };
+        let value = value(run).map(|value| format!("{value:.digits$}"));
+        Fact::new(name, value.unwrap_or_else(|| "–".to_owned()), meaning)
+    };
+    let mut facts = vec![Fact::new(
+        "end",
+        format!("{:.2} s: {reason}", run.time_secs),
+        "when and why the run ended",
+    )];
+    facts.extend(NUMBERS.iter().map(number));
+    if let Some(highest) = run.highest_density {
+        let ([x, y], secs) = (highest.at, highest.at_secs);
+        facts.push(Fact::new(
+            "highest density at",
+            format!("({x:.2}, {y:.2}) m, {secs:.2} s"),
+            "place of this agent and time of the highest density",
+        ));
+    }
+    facts.extend(run.longest_queues.iter().map(|queue| {
+        Fact::new(
+            &format!("longest queue before {}", queue.before),
+            format!("{} agents at {:.0} s", queue.agents, queue.at_secs),
+            format!(
+                "most agents at one time that walk there slower than {SLOW} of their preferred speed, from there up to \
+                 the first gap of {GAP} m along their ways; of a queue with a line, those who stand in it"
+            ),
+        )
+    }));
+    facts
+}
+
+/// Who is stuck, by the likely cause.
+pub fn stuck(run: &Summary) -> Vec<Block> {
+    let rule = format!(
+        "Agents are stuck if their way became shorter by less than {HEADWAY} m in their last {STUCK_AFTER} s of walking. \
+         Agents that wait, queue or never leave their goal do not count."
+    );
+    if run.stuck == 0 {
+        return vec![Block::text(format!(
+            "No agent was stuck at the end. {rule}"
+        ))];
+    }
+    let table = Table::of(&run.stuck_because)
+        .column("agents", |group| group.agents)
+        .column("likely cause", |group| group.cause.as_str())
+        .column("one of them", |group| group.agent)
+        .column("its place [m]", |group| {
+            format!("({:.2}, {:.2})", group.at[0], group.at[1])
+        })
+        .fixed("for [s]", 0, |group| group.for_secs)
+        .table();
+    vec![Block::Table(table, rule)]
+}
+
+/// The values of a measurement in words, with their definitions.
+pub fn measured(measurement: &Measurement, run: &Summary) -> Vec<Fact> {
+    let fact = |quantity: Quantity| {
+        let value = run.metrics.get(&quantity.name);
+        let value = match value {
+            Some(value) if value.is_u64() => value.to_string(),
+            Some(value) => value
+                .as_f64()
+                .map_or("–".to_owned(), |value| format!("{value:.3}")),
+            None => "–".to_owned(),
+        };
+        let unit = quantity.unit;
+        Fact {
+            value: format!("{value} {unit}").trim_end().to_owned(),
+            name: quantity.name,
+            meaning: quantity.meaning,
+        }
+    };
+    measurement.quantities().into_iter().map(fact).collect()
+}

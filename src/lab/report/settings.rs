@@ -1,0 +1,63 @@
+//! The settings of a run that differ from the defaults.
+
+use serde_json::Value;
+
+use crate::output::document::Block;
+use crate::output::table::Table;
+use crate::scenario::{Scenario, settings};
+
+/// Keys that the report shows elsewhere.
+const ELSEWHERE: [&str; 3] = ["name", "description", "preset"];
+
+struct Row {
+    key: &'static str,
+    value: String,
+    default: String,
+    from: &'static str,
+    meaning: &'static str,
+}
+
+/// The numbers and words of a scenario that differ from the defaults, with their meanings.
+pub fn changed(scenario: &Scenario) -> Block {
+    let all = scenario.settings();
+    let row = |doc: crate::scenario::SettingDoc| {
+        let given = |document: &Value| {
+            let parameter = document.get("parameters").and_then(|all| all.get(doc.key));
+            parameter.or_else(|| document.get(doc.key)).cloned()
+        };
+        let value = given(&all)?;
+        let is_simple = !value.is_object() && !value.is_array() && !value.is_null();
+        let value = match value {
+            Value::String(text) => text,
+            value => value.to_string(),
+        };
+        let default = doc.default.unwrap_or_else(|| "–".to_owned());
+        let differs = is_simple && value != default && !is_equal(&value, &default);
+        (differs && !ELSEWHERE.contains(&doc.key)).then(|| Row {
+            key: doc.key,
+            value,
+            default,
+            from: match given(&scenario.document) {
+                Some(_) => "scenario",
+                None => "profile",
+            },
+            meaning: doc.description,
+        })
+    };
+    let rows: Vec<Row> = settings().into_iter().filter_map(row).collect();
+    let table = Table::of(&rows)
+        .column("setting", |row| row.key)
+        .column("value", |row| row.value.as_str())
+        .column("default", |row| row.default.as_str())
+        .column("set by", |row| row.from)
+        .column("meaning", |row| row.meaning)
+        .table();
+    let caption = "All other settings have their defaults: `sandbox list --settings` lists them. Crowds, places and \
+                   measurements are in the scenario.";
+    Block::Table(table, caption.to_owned())
+}
+
+fn is_equal(value: &str, default: &str) -> bool {
+    let numbers = [value, default].map(|text| text.parse::<f64>().ok());
+    matches!(numbers, [Some(a), Some(b)] if a == b)
+}

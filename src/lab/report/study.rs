@@ -1,0 +1,240 @@
+//! The report of a study: its runs side by side, with their spread.
+
+use std::collections::BTreeMap;
+
+use super::{facts, limits, settings};
+use crate::analysis::statistics::MeanStd;
+use crate::lab::curves::{BAND, Curve, curves, panel};
+use crate::lab::error::LabError;
+use crate::lab::gallery::{color, distinct, with_legend};
+use crate::lab::sweep::{Combination, Drawing, Gathered, State, readable};
+use crate::output::document::{Block, Document};
+use crate::output::plot::Sheet;
+use crate::output::table::Table;
+use crate::runs::case::RunResult;
+use crate::runs::identity::ENGINE;
+use crate::scenario::Scenario;
+use crate::scenario::measurements::Quantity;
+
+/// The most combinations beside each other in a table.
+const BESIDE: usize = 3;
+/// The most lines of a picture with curves.
+const MOST_LINES: usize = 14;
+/// The first digits of a digest.
+const DIGITS: usize = 32;
+
+/// A number of runs: its name, its definition, and its values.
+struct Number<'a> {
+    name: String,
+    meaning: String,
+    value: Box<dyn Fn(&RunResult) -> Option<f64> + 'a>,
+}
+
+/// The report of the finished runs of a study, which `command` computes; `report` makes the report.
+///
+/// # Errors
+/// No run is finished, or a scenario has become invalid.
+pub fn of_study(gathered: &Gathered, [command, report]: [&str; 2]) -> Result<Document, LabError> {
+    let study = gathered.study;
+    let combinations = gathered.combinations();
+    let finished: usize = combinations.iter().map(|one| one.results.len()).sum();
+    if finished == 0 {
+        return Err(LabError::missing(&study.name, "finished run"));
+    }
+    let first = combinations.iter().filter_map(|one| one.cells.first());
+    let scenarios = first.map(|cell| {
+        let invalid = |error: crate::scenario::ScenarioError| LabError::Data(error.to_string());
+        cell.case.scenario().map_err(invalid)
+    });
+    let scenarios: Vec<Scenario> = scenarios.collect::<Result<_, _>>()?;
+    let names: Vec<String> = combinations
+        .iter()
+        .map(|one| name(one, &study.axes))
+        .collect();
+    let description = study.document["description"].as_str().unwrap_or_default();
+    let text = format!(
+        "{finished} of {} runs are finished: {} combination(s) of settings, each with up to {} seeds. Values are means over \
+         the seeds ± half their 95 % confidence intervals (Student's t), then the least and the largest value.",
+        study.cells.len(),
+        combinations.len(),
+        study.seeds
+    );
+    let mut blocks = vec![Block::heading("Results"), Block::text(text)];
+    let numbers = numbers(gathered, &scenarios);
+    for (part, names) in combinations.chunks(BESIDE).zip(names.chunks(BESIDE)) {
+        blocks.push(Block::Table(
+            side_by_side(&numbers, part, names),
+            String::new(),
+        ));
+    }
+    let definitions = Table::of(&numbers)
+        .column("result", |number| number.name.as_str())
+        .column("definition", |number| number.meaning.as_str())
+        .table();
+    blocks.push(Block::text("What the results mean:"));
+    blocks.push(Block::Table(definitions, String::new()));
+    blocks.extend(figures(gathered, &combinations, &names));
+    blocks.push(Block::heading("Scenario"));
+    if let (Some(scenario), Some(name)) = (scenarios.first(), names.first()) {
+        blocks.push(Block::text(format!(
+            "{}: {} Settings of the first combination ({name}) that differ from the defaults:",
+            scenario.name, scenario.description
+        )));
+        blocks.push(settings::changed(scenario));
+    }
+    let profiles = distinct(scenarios.iter().map(|one| one.profile_name.as_str()));
+    blocks.extend(limits::limits(&profiles));
+    blocks.extend(limits::status());
+    blocks.push(Block::heading("How to run it again"));
+    blocks.push(Block::Code(vec![command.to_owned(), report.to_owned()]));
+    blocks.push(Block::Table(cells(gathered), format!(
+        "The runs. Digest: the first {DIGITS} of 64 digits of the SHA-256 of the final state, which the same version gives \
+         again on any number of threads (version {}, engine {ENGINE}).",
+        env!("CARGO_PKG_VERSION")
+    )));
+    Ok(Document {
+        title: format!("Report on the study {}", study.name),
+        subtitle: description.to_owned(),
+        blocks,
+    })
+}
+
+/// The varied settings of a combination in words.
+fn name(one: &Combination, axes: &[String]) -> String {
+    let varied = axes.iter().filter(|axis| *axis != "seed");
+    let parts = varied.filter_map(|axis| {
+        let value = readable(one.value(axis)?);
+        Some(match axis.as_str() {
+            "label" => value,
+            axis => format!("{axis} {value}"),
+        })
+    });
+    let name = parts.collect::<Vec<_>>().join(", ");
+    match name.is_empty() {
+        true => "all runs".to_owned(),
+        false => name,
+    }
+}
+
+/// The numbers of every run, then those of the measurements.
+fn numbers<'a>(gathered: &Gathered, scenarios: &[Scenario]) -> Vec<Number<'a>> {
+    let every = facts::NUMBERS.iter().map(|&(name, meaning, value)| Number {
+        name: name.to_owned(),
+        meaning: meaning.to_owned(),
+        value: Box::new(move |run: &RunResult| value(&run.summary)),
+    });
+    let measurements = scenarios.iter().flat_map(|one| &one.measurements);
+    let quantities = measurements.flat_map(|one| one.quantities());
+    let known: BTreeMap<String, Quantity> = quantities.map(|one| (one.name.clone(), one)).collect();
+    let measured = gathered.numbers().into_iter();
+    let measured = measured.filter_map(|name| known.get(&name).cloned());
+    let measured = measured.map(
+        |Quantity {
+             name,
+             unit,
+             meaning,
+         }| Number {
+            name: match unit {
+                "" => name.clone(),
+                unit => format!("{name} [{unit}]"),
+            },
+            meaning,
+            value: Box::new(move |run: &RunResult| run.summary.metric(&name)),
+        },
+    );
+    every.chain(measured).collect()
+}
+
+/// Results in rows, combinations in columns.
+fn side_by_side(numbers: &[Number], combinations: &[Combination], names: &[String]) -> Table {
+    let mut columns = Table::of(numbers).column("result", |number| number.name.as_str());
+    for (one, name) in combinations.iter().zip(names) {
+        columns = columns.column(&format!("{name} ({} runs)", one.results.len()), |number| {
+            let values = one.results.iter().filter_map(|run| (number.value)(run));
+            spread(&values.collect::<Vec<f64>>())
+        });
+    }
+    columns.table()
+}
+
+/// Mean, half the confidence interval, and range.
+fn spread(values: &[f64]) -> Option<String> {
+    let mean = MeanStd::of(values)?;
+    let [least, most] = values
+        .iter()
+        .fold([f64::MAX, f64::MIN], |[low, high], &value| {
+            [low.min(value), high.max(value)]
+        });
+    let text = match mean.interval_95() {
+        _ if least == most => format!("{}", rounded(mean.mean)),
+        Some(half) => format!("{} ± {}", rounded(mean.mean), rounded(half)),
+        None => rounded(mean.mean),
+    };
+    Some(match least == most {
+        true => text,
+        false => format!("{text} ({} to {})", rounded(least), rounded(most)),
+    })
+}
+
+fn rounded(value: f64) -> String {
+    match value.fract() == 0.0 && value.abs() < 1e9 {
+        true => format!("{value}"),
+        false => format!("{value:.3}"),
+    }
+}
+
+/// The picture of the study, and its mean curves.
+fn figures(gathered: &Gathered, combinations: &[Combination], names: &[String]) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let drawing = Drawing {
+        measurements: Vec::new(),
+        over: Vec::new(),
+    };
+    if let Ok(Some(sheet)) = gathered.sheet(&drawing) {
+        let caption = "Results over the varied settings; bars are the 95 % confidence intervals of the means.";
+        blocks.push(Block::heading("Figures"));
+        blocks.push(Block::figure(sheet, caption));
+    }
+    let all = combinations.iter().zip(names).enumerate();
+    let all = all.take(MOST_LINES).flat_map(|(k, (one, name))| {
+        let own = curves(&one.results).into_iter();
+        own.map(move |curve| (curve, color(k), name.clone()))
+    });
+    let all: Vec<(Curve, _, String)> = all.collect();
+    let kinds = distinct(all.iter().map(|(curve, ..)| curve.name.as_str()));
+    let panels = kinds.iter().filter_map(|kind| {
+        let own = all.iter().filter(|(curve, ..)| curve.name == *kind);
+        let own = own.map(|(curve, color, name)| (curve, *color, name.clone()));
+        panel(&own.collect::<Vec<_>>())
+    });
+    let panels: Vec<_> = panels.collect();
+    if !panels.is_empty() {
+        let columns = panels.len().min(2);
+        let sheet = Sheet::new("", columns, [220.0, 160.0], with_legend(panels, columns));
+        let caption = format!("Mean curves over the seeds; {BAND}.");
+        blocks.push(Block::figure(sheet, caption));
+    }
+    blocks
+}
+
+/// The runs with their digests.
+fn cells(gathered: &Gathered) -> Table {
+    let rows: Vec<_> = gathered.study.cells.iter().zip(&gathered.states).collect();
+    Table::of(&rows)
+        .column("run", |(cell, _)| cell.to_string())
+        .column("state", |(_, state)| state.name())
+        .column("end [s]", |(_, state)| {
+            state
+                .result()
+                .map(|run| format!("{:.2}", run.summary.time_secs))
+        })
+        .column("digest, or why it failed", |(_, state)| match state {
+            State::Finished(run) => {
+                let digest = run.summary.state_sha256.chars();
+                Some(digest.take(DIGITS).collect::<String>())
+            }
+            State::Failed(message) => Some(message.clone()),
+            State::Missing => None,
+        })
+        .table()
+}
