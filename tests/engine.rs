@@ -51,6 +51,7 @@ mod neighbors;
 mod off_floor;
 mod oscillation;
 mod overlaps;
+mod overview;
 mod passages;
 mod periodic;
 mod periodic_scenarios;

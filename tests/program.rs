@@ -39,6 +39,7 @@ mod read;
 mod read_hdf5;
 mod recording;
 mod recording_views;
+mod reports;
 mod reproduction;
 mod resumed_program;
 mod scenario_geometry;

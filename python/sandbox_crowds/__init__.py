@@ -1,15 +1,15 @@
 """Dense crowds: simulation, measurement and inspection of people at up to ten per square meter.
 
->>> import sandbox_crowds as sc
->>> run = sc.run("evacuation", until=20)
->>> run.agents(at=15)          # a DataFrame, one row per agent
->>> run.draw(at=15)            # a picture
+    import sandbox_crowds as sc
+    run = sc.run("evacuation", until=20)
+    run.agents(at=15)          # a DataFrame, one row per agent
+    run.draw(at=15)            # a picture
 
 Step by step, for loops that observe and steer:
 
->>> simulation = sc.Simulation("evacuation", seed=2)
->>> simulation.step(100)
->>> simulation.positions       # an array of shape (agents, 2), meters
+    simulation = sc.Simulation("evacuation", seed=2)
+    simulation.step(100)
+    simulation.positions       # an array of shape (agents, 2), meters
 
 SI units. Mass is dimensionless, 1 = an average person, so that densities are in persons per square meter (P/m²).
 A scenario is a dict as in a scenario file, the path of such a file, or the name of a scenario that comes with the

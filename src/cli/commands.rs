@@ -6,6 +6,7 @@ use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
 use super::arguments::{ResumeOptions, RunOptions};
+use super::update::UpdateOptions;
 use super::{
     accuracy, bench, calibrate, compare, draw, estimate, inspect, measure, report, reproduce,
     stress, suite, sweep,
@@ -132,12 +133,17 @@ pub enum Command {
     /// List what differs between two results: in settings and measurements, or between two trajectory files
     #[command(after_help = "Example: sandbox compare one.json other.json")]
     Compare(compare::CompareOptions),
-    /// List the built-in scenarios and the profiles, or the settings that --set takes
+    /// List the built-in scenarios and the profiles, the settings that --set takes, or what measurements measure
     #[command(after_help = "Example: sandbox list --settings")]
     List {
         /// List the settings that --set takes, with meaning, unit, default and range
         #[arg(long)]
         settings: bool,
+        /// List what the measurements of scenarios measure: names, units and definitions of their values
+        #[arg(long, conflicts_with = "settings")]
+        measurements: bool,
+        #[command(flatten)]
+        document: UpdateOptions,
         /// Print one JSON object instead of text
         #[arg(long)]
         json: bool,

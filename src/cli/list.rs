@@ -1,4 +1,5 @@
-//! `sandbox list`: the scenarios and profiles, or the settings that `--set` takes. `sandbox schema`: the JSON Schema.
+//! `sandbox list`: the scenarios and profiles, the settings that `--set` takes, or what measurements measure. `sandbox
+//! schema`: the JSON Schema.
 
 use std::collections::BTreeMap;
 
@@ -6,17 +7,49 @@ use serde_json::{Value, json};
 
 use super::failure::Failure;
 use super::terminal::{say, tell};
+use super::update::UpdateOptions;
+use crate::output::table::Table;
 use crate::scenario::catalog::{ABOUT, NAMES};
+use crate::scenario::measurements::{Measurement, Quantity};
 use crate::scenario::{self, SHIPPED, SettingDoc, calibrated, nested_settings, settings};
 
 /// Most characters in a line beside a name.
 const WIDTH: usize = 80;
 
-pub fn run(list_settings: bool, as_json: bool) -> Result<(), Failure> {
+pub fn run(list_settings: bool, document: &UpdateOptions, as_json: bool) -> Result<(), Failure> {
+    if let Some(file) = &document.update {
+        let file = file.display();
+        let reason =
+            format!("--update {file}: inserts the table of --measurements; give that, too");
+        return Err(Failure::Input(reason));
+    }
     match list_settings {
         true => tell(as_json, all_settings, settings_text),
         false => tell(as_json, overview, overview_text),
     }
+}
+
+/// The name of the table in the document.
+const TABLE: &str = "values";
+
+/// `sandbox list --measurements`.
+pub fn measurements(document: &UpdateOptions, as_json: bool) -> Result<(), Failure> {
+    document.check(None, &[TABLE])?;
+    let all = Measurement::all_quantities();
+    let rows = all
+        .iter()
+        .flat_map(|(of, own)| own.iter().map(move |one| (of, one)));
+    let rows: Vec<(&String, &Quantity)> = rows.collect();
+    let table = Table::of(&rows)
+        .column("measurement", |(of, _)| format!("`{of}`"))
+        .column("value", |(_, one)| format!("`{}`", one.name))
+        .column("unit", |(_, one)| one.unit)
+        .column("meaning", |(_, one)| one.meaning.as_str())
+        .table();
+    document.put([(TABLE, table.markdown())])?;
+    let line = |(of, one): &(&String, &Quantity)| json!({"measurement": of, "value": one.name, "unit": one.unit, "meaning": one.meaning});
+    let json = || rows.iter().map(line).collect::<Value>();
+    tell(as_json, json, || table.text().replace('`', ""))
 }
 
 /// The built-in scenarios, the profiles of the paper, and the calibrated ones: names and descriptions.

@@ -111,7 +111,18 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Estimate(options) => estimate::run(&options),
         Command::Measure(options) => measure::run(&options),
         Command::Compare(options) => compare::run(&options),
-        Command::List { settings, json } => list::run(settings, json),
+        Command::List {
+            measurements: true,
+            document,
+            json,
+            ..
+        } => list::measurements(&document, json),
+        Command::List {
+            settings,
+            document,
+            json,
+            ..
+        } => list::run(settings, &document, json),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { out } => manual::man(out.as_deref()),
     }

@@ -224,8 +224,9 @@ fn zero<'a>(names: impl Iterator<Item = &'a str>) -> String {
         }
     }
     let lines = lines.iter().enumerate();
-    let lines = lines.map(|(k, line)| format!("  {} {line}\n", if k == 0 { "0:" } else { "  " }));
-    lines.collect()
+    let lines = lines.map(|(k, line)| format!("  {} {line}", if k == 0 { "0:" } else { "  " }));
+    let text = lines.collect::<Vec<_>>().join(",\n");
+    if text.is_empty() { text } else { text + "\n" }
 }
 
 /// The ids of the agents that `integrity` has found in walls; empty without any.

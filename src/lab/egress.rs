@@ -134,7 +134,7 @@ impl Egress {
             }
         }
         curve(&all, Style::full(color(0), 1.6, ALL));
-        let x = Axis::linear("time [s]", [start, end]);
+        let x = Axis::linear("time [s]", [start, 1.02 * end]);
         let top = spanned([0.0, entered].into_iter())[1];
         let y = Axis::linear("people out", [0.0, top]);
         let panel = Panel::new("", x, y, marks);

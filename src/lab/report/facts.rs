@@ -25,6 +25,9 @@ impl Fact {
 /// A number that every run has: its name, unit and definition, and its value.
 type Number = (&'static str, &'static str, fn(&Summary) -> Option<f64>);
 
+/// The name of the highest density.
+const HIGHEST: &str = "highest density [P/m²]";
+
 /// The numbers of every run.
 pub const NUMBERS: [Number; 8] = [
     ("entered", "agents that entered", |run| {
@@ -37,20 +40,22 @@ pub const NUMBERS: [Number; 8] = [
         Some(run.remaining as f64)
     }),
     (
-        "50 % [s]",
+        "50 % out [s]",
         "when half of the agents that entered had left",
         |run| run.t50_secs,
     ),
     (
-        "95 % [s]",
+        "95 % out [s]",
         "when 95 % of the agents that entered had left",
         |run| run.t95_secs,
     ),
-    ("all [s]", "when all agents that entered had left", |run| {
-        run.t100_secs
-    }),
     (
-        "highest density [P/m²]",
+        "all out [s]",
+        "when all agents that entered had left",
+        |run| run.t100_secs,
+    ),
+    (
+        HIGHEST,
         "the highest SPH density at an agent: the kernel of the model (Eq. 5) with a support radius of 1 m over the \
          agent itself and the agents and walls around it; a person alone has 1.27 P/m². Observed in every coarse frame",
         |run| run.highest_density.map(|highest| highest.density_per_m2),
@@ -81,14 +86,16 @@ pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
         format!("{:.2} s: {reason}", run.time_secs),
         "when and why the run ended",
     )];
-    facts.extend(NUMBERS.iter().map(number));
-    if let Some(highest) = run.highest_density {
-        let ([x, y], secs) = (highest.at, highest.at_secs);
-        facts.push(Fact::new(
-            "highest density at",
-            format!("({x:.2}, {y:.2}) m, {secs:.2} s"),
-            "place of this agent and time of the highest density",
-        ));
+    for one in &NUMBERS {
+        facts.push(number(one));
+        if let (Some(highest), true) = (run.highest_density, one.0 == HIGHEST) {
+            let ([x, y], secs) = (highest.at, highest.at_secs);
+            facts.push(Fact::new(
+                "its place and time",
+                format!("({x:.2}, {y:.2}) m, {secs:.2} s"),
+                "place of the agent with the highest density, and when it had it first",
+            ));
+        }
     }
     facts.extend(run.longest_queues.iter().map(|queue| {
         Fact::new(
@@ -96,7 +103,8 @@ pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
             format!("{} agents at {:.0} s", queue.agents, queue.at_secs),
             format!(
                 "most agents at one time that walk there slower than {SLOW} of their preferred speed, from there up to \
-                 the first gap of {GAP} m along their ways; of a queue with a line, those who stand in it"
+                 the first gap of {GAP} m along their ways, without those who have just started; of a queue with a line, those \
+                 who stand in it"
             ),
         )
     }));

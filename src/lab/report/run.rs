@@ -36,7 +36,7 @@ pub fn of_run(run: &Run, sources: Sources) -> Document {
         Block::figure(sheet, caption)
     });
     blocks.extend(plan);
-    blocks.push(Block::text("Settings that differ from the defaults:"));
+    blocks.push(Block::heading("Settings that differ from the defaults"));
     blocks.push(settings::changed(scenario));
     let egress = Egress::of(simulation);
     if !egress.exits.is_empty() {

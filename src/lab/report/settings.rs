@@ -14,7 +14,7 @@ struct Row {
     value: String,
     default: String,
     from: &'static str,
-    meaning: &'static str,
+    meaning: String,
 }
 
 /// The numbers and words of a scenario that differ from the defaults, with their meanings.
@@ -26,6 +26,10 @@ pub fn changed(scenario: &Scenario) -> Block {
             parameter.or_else(|| document.get(doc.key)).cloned()
         };
         let value = given(&all)?;
+        let is_parameter = |key: &str| {
+            let parameters = all.get("parameters");
+            parameters.is_some_and(|all| all.get(key).is_some())
+        };
         let is_simple = !value.is_object() && !value.is_array() && !value.is_null();
         let value = match value {
             Value::String(text) => text,
@@ -37,11 +41,12 @@ pub fn changed(scenario: &Scenario) -> Block {
             key: doc.key,
             value,
             default,
-            from: match given(&scenario.document) {
-                Some(_) => "scenario",
-                None => "profile",
+            from: match (given(&scenario.document), is_parameter(doc.key)) {
+                (Some(_), _) => "scenario",
+                (None, true) => "profile",
+                (None, false) => "program",
             },
-            meaning: doc.description,
+            meaning: doc.description.replace('`', ""),
         })
     };
     let rows: Vec<Row> = settings().into_iter().filter_map(row).collect();
@@ -50,7 +55,7 @@ pub fn changed(scenario: &Scenario) -> Block {
         .column("value", |row| row.value.as_str())
         .column("default", |row| row.default.as_str())
         .column("set by", |row| row.from)
-        .column("meaning", |row| row.meaning)
+        .column("meaning", |row| row.meaning.as_str())
         .table();
     let caption = "All other settings have their defaults: `sandbox list --settings` lists them. Crowds, places and \
                    measurements are in the scenario.";

@@ -44,8 +44,15 @@ impl Document {
         let mut writer = Writer { pages, y: TOP };
         writer.lines(&self.title, TITLE, HEAD)?;
         writer.lines(&self.subtitle, CAPTION, GRAY)?;
-        for block in &self.blocks {
+        for (k, block) in self.blocks.iter().enumerate() {
             writer.y += GAP;
+            if let (Block::Heading(_), Some(Block::Figure(sheet, caption))) =
+                (block, self.blocks.get(k + 1))
+            {
+                let (_, size) = fitted(sheet);
+                let below = caption_height(caption) + 2.0 * GAP + HEADING * LINE * 1.1;
+                writer.make_room(size[1] + below + GAP);
+            }
             writer.block(block)?;
         }
         writer.feet()?;
@@ -98,7 +105,8 @@ impl Writer {
 
     /// A text that begins `aside` from the left.
     fn beside(&mut self, text: &str, (size, color): (f64, Rgb), aside: f64) -> Done {
-        for line in text_lines(text, size, WIDTH - aside) {
+        // Names of commands and settings are marked for HTML.
+        for line in text_lines(&text.replace('`', ""), size, WIDTH - aside) {
             self.make_room(size * LINE);
             self.pages
                 .text(&line, [LEFT + aside, self.y], (size, color))?;
@@ -122,20 +130,8 @@ impl Writer {
     }
 
     fn figure(&mut self, sheet: &Sheet, caption: &str) -> Done {
-        let mut print = print();
-        let mut size = Pages::size_of(sheet, &print);
-        for _ in 0..3 {
-            if size[1] > HIGHEST {
-                let width = print.width.unwrap_or(WIDTH) * HIGHEST / size[1];
-                print = Print {
-                    width: Some(width),
-                    ..print
-                };
-                size = Pages::size_of(sheet, &print);
-            }
-        }
-        let below = text_lines(caption, CAPTION, WIDTH).len() as f64;
-        self.make_room(size[1] + below * CAPTION * LINE * 1.2);
+        let (print, size) = fitted(sheet);
+        self.make_room(size[1] + caption_height(caption));
         let aside = 0.5 * (WIDTH - size[0]).max(0.0);
         self.pages.sheet(sheet, &print, [LEFT + aside, self.y])?;
         self.y += size[1];
@@ -147,7 +143,7 @@ impl Writer {
         let widths = widths(&rows);
         let wrapped = rows.iter().map(|row| {
             let cells = row.iter().zip(&widths);
-            let cells = cells.map(|(cell, width)| text_lines(cell, CELL, *width));
+            let cells = cells.map(|(cell, width)| text_lines(&cell.replace('`', ""), CELL, *width));
             cells.collect::<Vec<_>>()
         });
         let wrapped: Vec<Vec<Vec<String>>> = wrapped.collect();
@@ -207,13 +203,34 @@ impl Writer {
     }
 }
 
+/// How a figure is printed, and its size.
+fn fitted(sheet: &Sheet) -> (Print, [f64; 2]) {
+    let mut print = print();
+    let mut size = Pages::size_of(sheet, &print);
+    for _ in 0..3 {
+        if size[1] > HIGHEST {
+            let width = print.width.unwrap_or(WIDTH) * HIGHEST / size[1];
+            print = Print {
+                width: Some(width),
+                ..print
+            };
+            size = Pages::size_of(sheet, &print);
+        }
+    }
+    (print, size)
+}
+
+fn caption_height(caption: &str) -> f64 {
+    text_lines(caption, CAPTION, WIDTH).len() as f64 * CAPTION * LINE * 1.2
+}
+
 fn height(row: &[Vec<String>]) -> f64 {
     let most = row.iter().map(Vec::len).max().unwrap_or(0).max(1);
     most as f64 * CELL * LINE + ROW
 }
 
-/// The widths of columns: as their texts need, or else at least as their words need, with the rest in proportion to
-/// what each one lacks.
+/// The widths of columns: as their texts need, or else at least as their words need; the rest is shared such that the
+/// columns that lack the least get all they need.
 fn widths(rows: &[Vec<String>]) -> Vec<f64> {
     let columns = rows.first().map_or(0, Vec::len);
     let most = |width: &dyn Fn(&str) -> f64| -> Vec<f64> {
@@ -224,13 +241,15 @@ fn widths(rows: &[Vec<String>]) -> Vec<f64> {
     let wanted = most(&text);
     let least = most(&|cell: &str| cell.split(' ').map(text).fold(0.0, f64::max));
     let room = WIDTH - APART * (columns.max(1) - 1) as f64;
-    let (all, needed): (f64, f64) = (wanted.iter().sum(), least.iter().sum());
-    if all <= room {
-        return wanted;
+    let lack = |k: &usize| wanted[*k] - least[*k];
+    let mut order: Vec<usize> = (0..columns).collect();
+    order.sort_by(|one, other| lack(one).total_cmp(&lack(other)));
+    let mut widths = least.clone();
+    let mut rest = (room - least.iter().sum::<f64>()).max(0.0);
+    for (done, k) in order.into_iter().enumerate() {
+        let more = lack(&k).min(rest / (columns - done) as f64);
+        widths[k] += more;
+        rest -= more;
     }
-    let part = ((room - needed) / (all - needed).max(1e-9)).max(0.0);
-    let widths = wanted.iter().zip(&least);
     widths
-        .map(|(wanted, least)| least + part * (wanted - least))
-        .collect()
 }

@@ -35,21 +35,31 @@ impl Document {
     }
 }
 
+/// A text in which words between backticks are code.
+fn marked(text: &str) -> String {
+    let parts = text.split('`').enumerate();
+    let parts = parts.map(|(k, part)| match k % 2 {
+        0 => escape(part),
+        _ => format!("<code>{}</code>", escape(part)),
+    });
+    parts.collect()
+}
+
 fn shown(block: &Block) -> Result<String, PlotError> {
     Ok(match block {
         Block::Heading(text) => format!("<h2>{}</h2>\n", escape(text)),
-        Block::Text(text) => format!("<p>{}</p>\n", escape(text)),
+        Block::Text(text) => format!("<p>{}</p>\n", marked(text)),
         Block::Code(lines) => format!("<pre>{}</pre>\n", escape(&lines.join("\n"))),
         Block::List(items) => {
             let items = items
                 .iter()
-                .map(|item| format!("<li>{}</li>\n", escape(item)));
+                .map(|item| format!("<li>{}</li>\n", marked(item)));
             format!("<ul>\n{}</ul>\n", items.collect::<String>())
         }
         Block::Table(table, caption) => {
             let caption = match caption.as_str() {
                 "" => String::new(),
-                caption => format!("<p class=\"about\">{}</p>\n", escape(caption)),
+                caption => format!("<p class=\"about\">{}</p>\n", marked(caption)),
             };
             format!("{}{caption}", table.html())
         }

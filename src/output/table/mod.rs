@@ -214,14 +214,14 @@ impl Table {
     }
 
     /// Whether a column is one of numbers, which are right-aligned.
-    fn has_numbers(&self, k: usize) -> bool {
+    pub fn has_numbers(&self, k: usize) -> bool {
         let mut cells = self.rows.iter().map(|row| &row[k]);
         let is_number = |cell| matches!(cell, &Cell::Number(_) | &Cell::Spread(..));
         self.heads[k].format != Format::AllDigits || cells.any(is_number)
     }
 
     /// The heads and the rows as they are shown.
-    fn lines(&self) -> Vec<Vec<String>> {
+    pub fn lines(&self) -> Vec<Vec<String>> {
         let heads = self.heads.iter().map(|head| head.name.clone());
         let rows = self.rows.iter().map(|row| {
             let cells = row.iter().zip(&self.heads);

@@ -127,16 +127,12 @@ impl Overview {
         for line in slow.chunk_by(|(aim, _), (other, _)| aim == other) {
             let (aim, first) = line[0];
             // A place is the door; a goal may lie far behind it.
-            let mut before = match aim {
+            let start = match aim {
                 Aim::Place(_) => 0.0,
                 _ => first,
             };
-            let close = line.iter().take_while(|&&(_, left)| {
-                let is_near = left - before <= GAP;
-                before = left;
-                is_near
-            });
-            self.notice(aim, close.count() as u32, now);
+            let distances = line.iter().map(|&(_, left)| left);
+            self.notice(aim, length(distances, start), now);
         }
         let places = scene
             .journeys
@@ -164,5 +160,33 @@ impl Overview {
             Some(_) => {}
             None => self.queues.push(queue),
         }
+    }
+}
+
+/// The number of agents at these ascending distances, from `start` up to the first gap.
+fn length(distances: impl Iterator<Item = f64>, start: f64) -> u32 {
+    let mut before = start;
+    let close = distances.take_while(|&left| {
+        let is_near = left - before <= GAP;
+        before = left;
+        is_near
+    });
+    close.count() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_queue_begins_at_its_place_and_ends_at_the_first_gap() {
+        let queue = |distances: &[f64], start| length(distances.iter().copied(), start);
+        let all = [0.5, 1.0, 3.9, 6.9, 6.9 + GAP, 6.9 + 2.0 * GAP + 0.1, 20.0];
+        assert_eq!(queue(&all, 0.0), 5);
+        // Nobody stands at the place.
+        assert_eq!(queue(&[GAP + 0.1, GAP + 0.2], 0.0), 0);
+        // Before a goal, the nearest agent is the first.
+        assert_eq!(queue(&[8.0, 8.4, 12.0], 8.0), 2);
+        assert_eq!(queue(&[], 0.0), 0);
     }
 }

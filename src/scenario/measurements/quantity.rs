@@ -1,5 +1,14 @@
 //! What a measurement measures: names, units and meanings of its values.
 
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use super::Measurement;
+
+/// A measurement of each kind that has values, with usual keys.
+const EXAMPLES: &str = include_str!("examples.json");
+
 /// A value of a measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantity {
@@ -9,6 +18,20 @@ pub struct Quantity {
     pub unit: &'static str,
     /// What it means, in a phrase.
     pub meaning: String,
+}
+
+impl Measurement {
+    /// The names of all measurements that have values, each with what it measures, for usual keys.
+    pub fn all_quantities() -> Vec<(String, Vec<Quantity>)> {
+        let examples: Vec<BTreeMap<String, Value>> =
+            serde_json::from_str(EXAMPLES).unwrap_or_default();
+        let quantities = examples.into_iter().filter_map(|example| {
+            let name = example.keys().next()?.clone();
+            let measurement: Self = serde_json::from_value(serde_json::json!(example)).ok()?;
+            Some((name, measurement.quantities()))
+        });
+        quantities.collect()
+    }
 }
 
 impl Quantity {

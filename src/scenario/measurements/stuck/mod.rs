@@ -22,6 +22,8 @@ const PART: f64 = 0.5;
 const EVERY: f64 = 1.0;
 /// The number of observations in [`STUCK_AFTER`] seconds.
 const KEPT: usize = 20;
+/// An agent has started after this number of observations.
+const STARTED: u32 = 3;
 /// Headways are kept as whole parts of the headway that is needed: this many. Results do not depend on rounding.
 const PARTS: f64 = 1e6;
 
@@ -159,10 +161,13 @@ fn watch(seen: &mut Vec<Option<Headway>>, simulation: &Simulation) {
 }
 
 impl Headway {
-    /// What the agent walks to, and how far it has to go, meters; `None` without a way, or if it walks in a direction.
+    /// What the agent walks to, and how far it has to go, meters; `None` without a way, if it walks in a direction, or if
+    /// it has just started.
     pub(super) fn way(&self) -> Option<(Aim, f64)> {
         let is_direction = matches!(self.aim, Aim::Direction(_));
+        let has_started = self.count >= STARTED;
         self.left
+            .filter(|_| has_started)
             .filter(|_| !is_direction)
             .map(|left| (self.aim, left))
     }
