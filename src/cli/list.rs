@@ -47,7 +47,10 @@ pub fn measurements(document: &UpdateOptions, as_json: bool) -> Result<(), Failu
         .column("meaning", |(_, one)| one.meaning.as_str())
         .table();
     document.put([(TABLE, table.markdown())])?;
-    let line = |(of, one): &(&String, &Quantity)| json!({"measurement": of, "value": one.name, "unit": one.unit, "meaning": one.meaning});
+    let line = |(of, one): &(&String, &Quantity)| {
+        let (value, unit, meaning) = (&one.name, one.unit, &one.meaning);
+        json!({"measurement": of, "value": value, "unit": unit, "meaning": meaning})
+    };
     let json = || rows.iter().map(line).collect::<Value>();
     tell(as_json, json, || table.text().replace('`', ""))
 }

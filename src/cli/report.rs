@@ -44,7 +44,8 @@ pub struct ReportOptions {
     /// Time at which the run ends, seconds [default: the scenario's duration]
     #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = seconds)]
     pub until: Option<f64>,
-    /// The time of a picture, seconds; may be repeated [default: the highest density, and when half of the agents had left]
+    /// The time of a picture, seconds; may be repeated [default: the highest density, and when half of the agents had
+    /// left]
     #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = seconds)]
     pub at: Vec<f64>,
     /// The folder with the results of a study [default: the study's name]

@@ -81,7 +81,8 @@ impl Egress {
         times
     }
 
-    /// The people out, their share of all people out, and when the first one, 50 %, 95 % and the last one left; by exit.
+    /// The people out, their share of all people out, and when the first one, 50 %, 95 % and the last one left; by
+    /// exit.
     pub fn table(&self) -> Table {
         let all = self.all();
         let row = |(name, times, of)| Row {

@@ -103,8 +103,8 @@ pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
             format!("{} agents at {:.0} s", queue.agents, queue.at_secs),
             format!(
                 "most agents at one time that walk there slower than {SLOW} of their preferred speed, from there up to \
-                 the first gap of {GAP} m along their ways, without those who have just started; of a queue with a line, those \
-                 who stand in it"
+                 the first gap of {GAP} m along their ways, without those who have just started; of a queue with a \
+                 line, those who stand in it"
             ),
         )
     }));
@@ -114,8 +114,8 @@ pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
 /// Who is stuck, by the likely cause.
 pub fn stuck(run: &Summary) -> Vec<Block> {
     let rule = format!(
-        "Agents are stuck if their way became shorter by less than {HEADWAY} m in their last {STUCK_AFTER} s of walking. \
-         Agents that wait, queue or never leave their goal do not count."
+        "Agents are stuck if their way became shorter by less than {HEADWAY} m in their last {STUCK_AFTER} s of \
+         walking. Agents that wait, queue or never leave their goal do not count."
     );
     if run.stuck == 0 {
         return vec![Block::text(format!(

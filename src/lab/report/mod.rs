@@ -1,5 +1,5 @@
-//! Reports: what is handed in with a run or a study. Plan, settings, results with their definitions, pictures, the limits
-//! of the model, its status by the documents of this version, and how to run it again.
+//! Reports: what is handed in with a run or a study. Plan, settings, results with their definitions, pictures, the
+//! limits of the model, its status by the documents of this version, and how to run it again.
 
 mod facts;
 mod limits;

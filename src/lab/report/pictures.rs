@@ -26,8 +26,8 @@ pub fn moments(run: &Summary) -> Vec<f64> {
     times
 }
 
-/// Pictures of a scenario at these ascending times, seconds, with agents in the colors of their densities. Times at which
-/// no agent is left are left out. `show` shows the progress.
+/// Pictures of a scenario at these ascending times, seconds, with agents in the colors of their densities. Times at
+/// which no agent is left are left out. `show` shows the progress.
 ///
 /// # Errors
 /// The simulation fails.

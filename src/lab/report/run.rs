@@ -41,11 +41,11 @@ pub fn of_run(run: &Run, sources: Sources) -> Document {
     let egress = Egress::of(simulation);
     if !egress.exits.is_empty() {
         blocks.push(Block::heading("Egress"));
-        let caption = "People out over time: the number of agents that have reached their exit or goal. Dashed: when 50, \
-                       95 and 100 % of the agents that entered had left.";
+        let caption = "People out over time: the number of agents that have reached their exit or goal. Dashed: when \
+                       50, 95 and 100 % of the agents that entered had left.";
         blocks.push(Block::figure(egress.sheet(""), caption));
-        let caption = "Shares are of the people who left. 50 %, 95 % and all of an exit are of the people who left there, \
-                       of the last row of all who entered. Goals: people without an exit.";
+        let caption = "Shares are of the people who left. 50 %, 95 % and all of an exit are of the people who left \
+                       there, of the last row of all who entered. Goals: people without an exit.";
         blocks.push(Block::Table(egress.table(), caption.to_owned()));
         blocks.extend(journeys(&summary.journeys));
     }
@@ -60,8 +60,9 @@ pub fn of_run(run: &Run, sources: Sources) -> Document {
         }
     }
     blocks.push(Block::text(
-        "ρ_i is the density of measurements: a kernel with a support radius of √5 m over the person and all that it sees. \
-         docs/measurements.md has the formulas, sources and limits. A dash stands for a value that the run has not.",
+        "ρ_i is the density of measurements: a kernel with a support radius of √5 m over the person and all that it \
+         sees. docs/measurements.md has the formulas, sources and limits. A dash stands for a value that the run has \
+          not.",
     ));
     let later: Vec<(f64, Sheet)> = pictures.collect();
     if !later.is_empty() {
@@ -87,7 +88,8 @@ pub fn of_run(run: &Run, sources: Sources) -> Document {
 fn about(scenario: &Scenario, summary: &Summary) -> Vec<Block> {
     let clock = scenario.scene.clock;
     let text = format!(
-        "{} agents behave by the profile `{}`, except where a group has its own; seed {}; at most {} s in steps of {} s.",
+        "{} agents behave by the profile `{}`, except where a group has its own; seed {}; at most {} s in steps of {} \
+         s.",
         summary.agents,
         scenario.profile_name,
         scenario.seed,
@@ -129,8 +131,8 @@ fn again(scenario: &Scenario, summary: &Summary, command: &str, report: &str) ->
         Block::heading("How to run it again"),
         Block::Code(vec![command.to_owned(), report.to_owned()]),
         Block::text(
-            "The same version gives the same results to the last bit, on any number of threads: the digest of the final \
-             state must be the one below.",
+            "The same version gives the same results to the last bit, on any number of threads: the digest of the \
+             final state must be the one below.",
         ),
         Block::List(vec![
             format!(

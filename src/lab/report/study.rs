@@ -20,14 +20,18 @@ use crate::scenario::measurements::Quantity;
 const BESIDE: usize = 3;
 /// The most lines of a picture with curves.
 const MOST_LINES: usize = 14;
+/// The most panels of a figure.
+const PANELS: usize = 4;
 /// The first digits of a digest.
 const DIGITS: usize = 32;
 
+type Value = Box<dyn Fn(&RunResult) -> Option<f64>>;
+
 /// A number of runs: its name, its definition, and its values.
-struct Number<'a> {
+struct Number {
     name: String,
     meaning: String,
-    value: Box<dyn Fn(&RunResult) -> Option<f64> + 'a>,
+    value: Value,
 }
 
 /// The report of the finished runs of a study, which `command` computes; `report` makes the report.
@@ -53,8 +57,8 @@ pub fn of_study(gathered: &Gathered, [command, report]: [&str; 2]) -> Result<Doc
         .collect();
     let description = study.document["description"].as_str().unwrap_or_default();
     let text = format!(
-        "{finished} of {} runs are finished: {} combination(s) of settings, each with up to {} seeds. Values are means over \
-         the seeds ± half their 95 % confidence intervals (Student's t), then the least and the largest value.",
+        "{finished} of {} runs are finished: {} combination(s) of settings, each with up to {} seeds. Values are means \
+         over the seeds ± half their 95 % confidence intervals (Student's t), then the least and the largest value.",
         study.cells.len(),
         combinations.len(),
         study.seeds
@@ -88,8 +92,8 @@ pub fn of_study(gathered: &Gathered, [command, report]: [&str; 2]) -> Result<Doc
     blocks.push(Block::heading("How to run it again"));
     blocks.push(Block::Code(vec![command.to_owned(), report.to_owned()]));
     blocks.push(Block::Table(cells(gathered), format!(
-        "The runs. Digest: the first {DIGITS} of 64 digits of the SHA-256 of the final state, which the same version gives \
-         again on any number of threads (version {}, engine {ENGINE}).",
+        "The runs. Digest: the first {DIGITS} of 64 digits of the SHA-256 of the final state, which the same version \
+         gives again on any number of threads (version {}, engine {ENGINE}).",
         env!("CARGO_PKG_VERSION")
     )));
     Ok(Document {
@@ -117,7 +121,7 @@ fn name(one: &Combination, axes: &[String]) -> String {
 }
 
 /// The numbers of every run, then those of the measurements.
-fn numbers<'a>(gathered: &Gathered, scenarios: &[Scenario]) -> Vec<Number<'a>> {
+fn numbers(gathered: &Gathered, scenarios: &[Scenario]) -> Vec<Number> {
     let every = facts::NUMBERS.iter().map(|&(name, meaning, value)| Number {
         name: name.to_owned(),
         meaning: meaning.to_owned(),
@@ -166,7 +170,7 @@ fn spread(values: &[f64]) -> Option<String> {
             [low.min(value), high.max(value)]
         });
     let text = match mean.interval_95() {
-        _ if least == most => format!("{}", rounded(mean.mean)),
+        _ if least == most => rounded(mean.mean),
         Some(half) => format!("{} ± {}", rounded(mean.mean), rounded(half)),
         None => rounded(mean.mean),
     };
@@ -176,11 +180,16 @@ fn spread(values: &[f64]) -> Option<String> {
     })
 }
 
+/// A number with four digits or more, as a reader compares them.
 fn rounded(value: f64) -> String {
-    match value.fract() == 0.0 && value.abs() < 1e9 {
-        true => format!("{value}"),
-        false => format!("{value:.3}"),
-    }
+    let digits = match value.abs() {
+        _ if value.fract() == 0.0 => 0,
+        1000.0.. => 0,
+        100.0.. => 1,
+        10.0.. => 2,
+        _ => 3,
+    };
+    format!("{value:.digits$}")
 }
 
 /// The picture of the study, and its mean curves.
@@ -193,7 +202,15 @@ fn figures(gathered: &Gathered, combinations: &[Combination], names: &[String]) 
     if let Ok(Some(sheet)) = gathered.sheet(&drawing) {
         let caption = "Results over the varied settings; bars are the 95 % confidence intervals of the means.";
         blocks.push(Block::heading("Figures"));
-        blocks.push(Block::figure(sheet, caption));
+        // Panels as large as those of other figures: few in each.
+        blocks.extend(sheet.panels.chunks(PANELS).map(|panels| {
+            let part = Sheet {
+                panels: with_legend(panels.to_vec(), 2),
+                columns: 2,
+                ..sheet.clone()
+            };
+            Block::figure(part, caption)
+        }));
     }
     let all = combinations.iter().zip(names).enumerate();
     let all = all.take(MOST_LINES).flat_map(|(k, (one, name))| {

@@ -26,8 +26,8 @@ const APART: f64 = 8.0;
 const ROW: f64 = 3.0;
 /// A heading needs this much of the page below it.
 const AFTER_HEADING: f64 = 90.0;
-/// Figures are at most this high.
-const HIGHEST: f64 = 0.55 * (FOOT - TOP);
+/// Figures are at most this high: two fit on a page.
+const HIGHEST: f64 = 0.45 * (FOOT - TOP);
 const HEAD: Rgb = [30, 64, 100];
 const RULE: Rgb = [205, 210, 216];
 const SHADE: Rgb = [238, 241, 244];

@@ -1,14 +1,14 @@
 //! Draws in a PDF: lines, areas, text in an embedded font, images, on pages of the same size.
 
+mod embedded;
+
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 
 use ab_glyph::{Font, GlyphId};
 use image::{RgbImage, imageops};
 use miniz_oxide::deflate::compress_to_vec_zlib;
-use pdf_writer::types::{
-    CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap,
-};
+use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Rect, Ref, Str};
 use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind,
@@ -20,15 +20,9 @@ use super::font;
 const CATALOG: Ref = Ref::new(1);
 const PAGES: Ref = Ref::new(2);
 const FONT: Ref = Ref::new(3);
-const CID_FONT: Ref = Ref::new(4);
-const DESCRIPTOR: Ref = Ref::new(5);
-const FONT_FILE: Ref = Ref::new(6);
-const CMAP: Ref = Ref::new(7);
 /// The first page; its content and then the other pages with theirs follow, then the images.
 const FIRST_PAGE: i32 = 8;
 const FONT_NAME: Name = Name(b"F");
-/// The name of the font, which is a part of DejaVu Sans.
-const BASE_FONT: Name = Name(b"SANDBX+DejaVuSans");
 /// The compression level of streams, from 0 to 10.
 const LEVEL: u8 = 8;
 /// The control points of a quarter of a circle.
@@ -166,55 +160,6 @@ impl Pdf {
                 .filter(Filter::FlateDecode);
         }
         Ok(pdf.finish())
-    }
-
-    /// Embeds the glyphs that are used, with their widths and letters, so that text can be searched and copied.
-    fn write_font(&self, pdf: &mut pdf_writer::Pdf) -> Result<(), String> {
-        let part = subsetter::subset(dejavu::sans::regular(), 0, &self.remapper);
-        let part = part.map_err(|error| format!("cannot embed the font: {error}"))?;
-        let info = SystemInfo {
-            registry: Str(b"Adobe"),
-            ordering: Str(b"Identity"),
-            supplement: 0,
-        };
-        pdf.type0_font(FONT)
-            .base_font(BASE_FONT)
-            .encoding_predefined(Name(b"Identity-H"))
-            .descendant_font(CID_FONT)
-            .to_unicode(CMAP);
-        let mut font = pdf.cid_font(CID_FONT);
-        font.subtype(CidFontType::Type2).base_font(BASE_FONT);
-        font.system_info(info).font_descriptor(DESCRIPTOR);
-        font.default_width(600.0)
-            .cid_to_gid_map_predefined(Name(b"Identity"));
-        let mut widths = font.widths();
-        for (&glyph, &(_, width)) in &self.letters {
-            widths.same(glyph, glyph, width);
-        }
-        widths.finish();
-        font.finish();
-        pdf.font_descriptor(DESCRIPTOR)
-            .name(BASE_FONT)
-            .flags(FontFlags::SYMBOLIC)
-            .bbox(Rect::new(-1021.0, -463.0, 1793.0, 1232.0))
-            .italic_angle(0.0)
-            .ascent(928.0)
-            .descent(-236.0)
-            .cap_height(729.0)
-            .stem_v(80.0)
-            .font_file2(FONT_FILE);
-        let data = compress_to_vec_zlib(&part, LEVEL);
-        let length = part.len() as i32;
-        let mut file = pdf.stream(FONT_FILE, &data);
-        file.filter(Filter::FlateDecode)
-            .pair(Name(b"Length1"), length);
-        file.finish();
-        let mut map = UnicodeCmap::new(Name(b"Custom"), info);
-        for (&glyph, &(letter, _)) in &self.letters {
-            map.pair(glyph, letter);
-        }
-        pdf.cmap(CMAP, &map.finish());
-        Ok(())
     }
 
     fn fill_color(&mut self, color: BackendColor) {

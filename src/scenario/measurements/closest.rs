@@ -29,8 +29,8 @@ impl Measure for Closest {
     }
 
     fn quantities(&self) -> Vec<Quantity> {
-        let meaning = "smallest distance between two centers as a part of the sum of the radii, at most 1, in ten frames \
-                       per second";
+        let meaning = "smallest distance between two centers as a part of the sum of the radii, at most 1, in ten \
+                       frames per second";
         vec![Quantity::new("closest_centers", "D_i + D_j", meaning)]
     }
 

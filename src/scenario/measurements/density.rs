@@ -37,13 +37,13 @@ impl Measure for Density {
 
     fn quantities(&self) -> Vec<Quantity> {
         let region = if self.region.is_some() {
-            "in the region"
+            " in the region"
         } else {
             ""
         };
         let of = |what: &str, meaning: &str| {
             let meaning = format!(
-                "{meaning} of the SPH densities of the agents {region} at {} s",
+                "{meaning} of the SPH densities of the agents{region} at {} s",
                 self.at_secs
             );
             Quantity::new(

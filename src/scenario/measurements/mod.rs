@@ -19,6 +19,7 @@ mod integrity;
 mod jitter;
 mod line_flow;
 mod mean;
+mod metrics;
 mod observed;
 mod oscillation;
 mod overview;
@@ -38,7 +39,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 pub use arrivals::{Evacuated, FlowOfFirst, FlowUntil, Locked, Pauses, Uncounted};
 pub use body_forces::BodyForces;
@@ -53,6 +54,7 @@ pub use front::{Front, FrontData, Reached};
 pub use integrity::{Integrity, Watched};
 pub use jitter::Jitter;
 pub use line_flow::LineFlow;
+pub use metrics::{Metric, Metrics};
 pub use observed::Observed;
 pub use oscillation::Oscillation;
 pub use overview::{GAP, HighestDensity, LongestQueue, SLOW};
@@ -70,9 +72,7 @@ use super::keys::places::journey_named;
 use crate::engine::journeys::Journey;
 use crate::engine::simulation::Simulation;
 use mean::Mean;
-use overview::Overview;
 use running::{Running, started};
-use stuck::Stuck;
 
 /// The keys of a measurement. They do not change during a run; what the measurement has seen is its `Seen`.
 pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
@@ -103,8 +103,8 @@ pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
     /// Observes an evaluated frame; called in every frame.
     fn observe(&self, _seen: &mut Self::Seen, _simulation: &Simulation) {}
 
-    /// The values in the order of the quantities; `None` if there were no agents or too few arrivals, or if the run ended
-    /// too early.
+    /// The values in the order of the quantities; `None` if there were no agents or too few arrivals, or if the run
+    /// ended too early.
     fn values(&self, _seen: &Self::Seen, _simulation: &Simulation) -> Vec<Option<f64>> {
         Vec::new()
     }
@@ -247,127 +247,6 @@ impl Measurement {
     /// What it measures.
     pub fn quantities(&self) -> Vec<Quantity> {
         self.started().quantities()
-    }
-}
-
-/// A measured value.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Metric {
-    /// Its name in reports.
-    pub name: String,
-    /// The number of the scenario's measurement, from 0.
-    pub measurement: usize,
-    /// The value; `None` if there were no agents or too few arrivals, or if the run ended too early.
-    pub value: Option<f64>,
-    /// The unit of the value.
-    pub unit: &'static str,
-}
-
-/// The measurements of one run.
-pub struct Metrics {
-    running: Vec<Box<dyn Running>>,
-    /// Observed in every run.
-    stuck: (Stuck, <Stuck as Measure>::Seen),
-    overview: Overview,
-    /// The number of the last observed frame.
-    observed: Option<u64>,
-}
-
-impl Metrics {
-    /// Prepares the measurements, and requests from `simulation` what they need.
-    pub fn new(measurements: &[Measurement], simulation: &mut Simulation) -> Self {
-        let running: Vec<_> = measurements.iter().map(Measurement::started).collect();
-        for until in running.iter().filter_map(|one| one.about().density_until) {
-            let last = simulation.frame().clock.frame_at(until);
-            simulation.request_density_until(last + 1);
-        }
-        Self {
-            running,
-            stuck: (Stuck, Vec::new()),
-            overview: Overview::default(),
-            observed: None,
-        }
-    }
-
-    /// Observes an evaluated frame; call it in every frame. A frame counts once, also if a run resumes at it.
-    pub fn observe(&mut self, simulation: &Simulation) {
-        let frame = simulation.frame().clock.frame();
-        if self.observed.replace(frame) == Some(frame) {
-            return;
-        }
-        for measurement in &mut self.running {
-            measurement.observe(simulation);
-        }
-        self.stuck.observe(simulation);
-        self.overview.observe(&self.stuck.1, simulation);
-    }
-
-    /// The highest SPH density at an agent in a coarse frame; `None` if no force needs densities.
-    pub fn highest_density(&self) -> Option<HighestDensity> {
-        self.overview.highest()
-    }
-
-    /// The longest queue before each place and goal, the longest one first. In a queue are the agents that walk there
-    /// slower than [`SLOW`] times their preferred speed, from the place up to the first [`GAP`] along their ways; at a
-    /// place with a queue of its own, the agents in it. Observed every second.
-    pub fn longest_queues(&self, simulation: &Simulation) -> Vec<LongestQueue> {
-        self.overview.longest(simulation)
-    }
-
-    /// The agents that made less than [`HEADWAY`] in [`STUCK_AFTER`] seconds of walking, grouped by the likely cause,
-    /// the largest group first.
-    pub fn stuck(&self, simulation: &Simulation) -> Vec<StuckGroup> {
-        stuck::groups(&self.stuck.1, simulation)
-    }
-
-    /// The ids of these agents, in order.
-    pub fn stuck_ids(&self, simulation: &Simulation) -> Vec<u32> {
-        let ids = &simulation.frame().agents.id;
-        let agents = stuck::agents(&self.stuck.1, simulation);
-        agents.into_iter().map(|(i, ..)| ids[i]).collect()
-    }
-
-    /// The values measured so far.
-    pub fn results(&self, simulation: &Simulation) -> Vec<Metric> {
-        let measured = self.running.iter().enumerate().flat_map(|(k, running)| {
-            let quantities = running.quantities().into_iter();
-            let values = running.values(simulation);
-            quantities.zip(values).map(move |(quantity, value)| Metric {
-                name: quantity.name,
-                measurement: k,
-                value,
-                unit: quantity.unit,
-            })
-        });
-        measured.collect()
-    }
-
-    /// The data of measurements that have more than values, by name.
-    pub fn data(&self) -> impl Iterator<Item = (String, Value)> {
-        self.running
-            .iter()
-            .filter_map(|measurement| measurement.data())
-    }
-
-    /// What each measurement has seen so far, as JSON.
-    pub fn seen(&self) -> Vec<String> {
-        let seen = self.running.iter().map(|one| one.seen().to_string());
-        let overview = json!(self.overview).to_string();
-        seen.chain([self.stuck.seen().to_string(), overview])
-            .collect()
-    }
-
-    /// Restores what was [`seen`](Self::seen) up to and in frame number `frame`; what does not match is ignored.
-    pub fn resume(&mut self, seen: &[String], frame: u64) {
-        self.observed = Some(frame);
-        let running = self.running.iter_mut().map(AsMut::as_mut);
-        let stuck: &mut dyn Running = &mut self.stuck;
-        let mut seen = seen.iter();
-        for (measurement, seen) in running.chain([stuck]).zip(&mut seen) {
-            measurement.resume(seen);
-        }
-        let overview = seen.next().and_then(|seen| serde_json::from_str(seen).ok());
-        self.overview = overview.unwrap_or_default();
     }
 }
 

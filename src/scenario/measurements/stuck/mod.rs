@@ -161,8 +161,8 @@ fn watch(seen: &mut Vec<Option<Headway>>, simulation: &Simulation) {
 }
 
 impl Headway {
-    /// What the agent walks to, and how far it has to go, meters; `None` without a way, if it walks in a direction, or if
-    /// it has just started.
+    /// What the agent walks to, and how far it has to go, meters; `None` without a way, if it walks in a direction, or
+    /// if it has just started.
     pub(super) fn way(&self) -> Option<(Aim, f64)> {
         let is_direction = matches!(self.aim, Aim::Direction(_));
         let has_started = self.count >= STARTED;
