@@ -3,7 +3,7 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sandbox::lab::estimate::{
-    Goal, Level, Limit, Means, Offer, Series, Tolerance, Wanted, further, predicted,
+    Goal, Level, Limit, Means, Offer, Prior, Series, Tolerance, Wanted, further, pilot, predicted,
 };
 
 /// Orders and sizes of errors with their weights in percent, as docs/accuracy.md gives them.
@@ -18,7 +18,7 @@ const ORDERS: [(f64, u32); 9] = [
     (2.0, 8),
     (2.5, 4),
 ];
-const SIZES: [(f64, u32); 3] = [(0.3, 70), (3.0, 20), (10.0, 10)];
+const SIZES: [(f64, u32); 5] = [(0.1, 25), (0.3, 35), (1.0, 20), (3.0, 13), (10.0, 7)];
 
 /// One of these, drawn by its weight.
 fn drawn(of: &[(f64, u32)], rng: &mut ChaCha8Rng) -> f64 {
@@ -94,7 +94,7 @@ fn the_limit_agrees_with_integrals_over_errors_orders_and_sizes() {
     let far = levels(&[(0.01, 8, 0.1), (0.02, 8, 0.4), (0.04, 6, 9.0)]);
     for (levels, apart) in [(two, false), (three, true), (far, true)] {
         let sigma = 0.8;
-        let limit = Limit::of(&levels, sigma * sigma);
+        let limit = Limit::of(&levels, sigma * sigma, &Prior::NONE.shares);
         let [mean, variance] = by_quadrature(&levels, sigma, apart);
         assert!((limit.value - mean).abs() < 1e-6, "{} {mean}", limit.value);
         let unmodeled = 0.125 * limit.error_at(levels[0].step);
@@ -111,7 +111,7 @@ fn the_limit_agrees_with_integrals_over_errors_orders_and_sizes() {
 fn the_limit_moves_and_scales_with_the_values() {
     let at = |factor: f64, off: f64| {
         let of = [(0.01, 7, 0.3), (0.02, 5, 0.9)].map(|(h, n, m)| (h, n, factor * m + off));
-        Limit::of(&levels(&of), (factor * 0.5).powi(2))
+        Limit::of(&levels(&of), (factor * 0.5).powi(2), &Prior::NONE.shares)
     };
     let (one, other) = (at(1.0, 0.0), at(40.0, 7.0));
     assert!((other.value - (40.0 * one.value + 7.0)).abs() < 1e-9);
@@ -129,7 +129,7 @@ fn many_exact_runs_give_the_limit_of_any_order() {
     for order in [0.5, 1.0, 2.0] {
         let of = [0.0025, 0.005, 0.01, 0.02]
             .map(|step: f64| (step, 1_000_000, 5.0 + 0.3 * (step / 0.02).powf(order)));
-        let limit = Limit::of(&levels(&of), 0.01);
+        let limit = Limit::of(&levels(&of), 0.01, &Prior::NONE.shares);
         let off = (limit.value - 5.0).abs();
         assert!(
             off < 2.0 * limit.variance.sqrt() && off < 0.02,
@@ -160,7 +160,7 @@ fn intervals_hold_the_limit_of_drawn_data_as_often_as_they_say() {
                 .collect()
         });
         let values = values.collect();
-        let means = Series { steps, values }.means().unwrap();
+        let means = Series { steps, values }.means(&Prior::NONE).unwrap();
         for (held, confidence) in held.iter_mut().zip([0.8, 0.95]) {
             let reached = means.reached(confidence).0;
             *held += usize::from((reached.value - 100.0).abs() <= reached.error);
@@ -180,7 +180,7 @@ fn means(values: &[(f64, &[f64])]) -> Means {
             .map(|(_, v)| v.iter().copied().map(Some).collect())
             .collect(),
     };
-    series.means().unwrap()
+    series.means(&Prior::NONE).unwrap()
 }
 
 fn offers(runs: [usize; 3]) -> Vec<Offer> {
@@ -226,7 +226,9 @@ fn smaller_errors_are_expected_to_need_more_runs() {
             means: means.clone(),
             tolerance,
         };
-        predicted(&[goal], &offers([0, 0, 0]), 1, (0.95, 100_000))
+        let (limit, offers) = (goal.means.limit(), offers([0, 0, 0]));
+        let first = pilot(&offers, 1);
+        predicted(&[(goal, limit)], &offers, first, (0.95, 100_000))
             .0
             .iter()
             .sum()
@@ -269,7 +271,7 @@ fn a_result_that_is_always_zero_is_exact() {
         steps: vec![0.01, 0.02],
         values: vec![vec![Some(0.0); 5], vec![Some(0.0); 5]],
     };
-    let means = series.means().unwrap();
+    let means = series.means(&Prior::NONE).unwrap();
     let reached = means.reached(0.95).0;
     assert_eq!(
         [reached.value, reached.error, reached.seeds, reached.step],

@@ -19,6 +19,7 @@ mod draw;
 mod estimate;
 mod estimate_bounds;
 mod estimate_failures;
+mod estimate_prior;
 mod estimate_program;
 mod estimate_table1;
 mod from_runs;

@@ -20,8 +20,11 @@ if TYPE_CHECKING:
 
 def estimate(
     scenario: _given.Scenario,
-    errors: Mapping[str, float | str],
+    errors: Mapping[str, float | str] | None = None,
     *,
+    bound: Mapping[str, str] | None = None,
+    runs: str | None = None,
+    costs: bool = False,
     confidence: float = 95,
     most_runs: int | None = None,
     most_minutes: float | None = None,
@@ -34,20 +37,27 @@ def estimate(
     """Computes results with the errors asked for: chooses time steps and numbers of runs.
 
     `errors` has the half width of the confidence interval of each result, in percent of the value or in its unit:
-    `{"flow_per_s": "1%", "density_mean_15s": 0.05}`. `confidence` is in percent. `out` is the folder that keeps the runs
-    (default: none); runs finished there are not made again. `settings` are keys of the scenario, as for `run`.
+    `{"flow_per_s": "1%", "density_mean_15s": 0.05}`. `bound` has the share of runs that shall be at most a bound, for
+    results whose bounds are wanted: `{"time_secs": "95%"}`; with `runs="imo"` they are made of 50 runs as in IMO's
+    guidelines. With `costs`, three runs with each preset are timed, and `costs` of the answer says what the same errors
+    would cost with it alone. `confidence` is in percent. `out` is the folder that keeps the runs (default: none); runs
+    finished there are not made again. `settings` are keys of the scenario, as for `run`.
 
     If a limit ends the estimate before all errors are as small as asked for, a warning says so. Raises `Error` if
     something is invalid, or a result has no value.
     """
     native = _given.native(scenario, geometry, settings)
-    wanted = [f"{name}={error}" for name, error in errors.items()]
+    wanted = [f"{name}={error}" for name, error in (errors or {}).items()]
+    shares = [f"{name}={share}" for name, share in (bound or {}).items()]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "scenario.json")
         path.write_text(native.document, encoding="utf-8")
         results = Path(folder, "results") if out is None else Path(_given.path_of(out))
         options = {
             "error": wanted,
+            "bound": shares,
+            "runs": runs,
+            "costs": costs,
             "confidence": confidence,
             "most_runs": most_runs,
             "most_minutes": most_minutes,
@@ -66,7 +76,9 @@ def estimate(
             warnings.warn(str(problem), stacklevel=2)
         written = max(_written(results).items(), key=lambda item: item[1])[0]
         answer = json.loads(written.read_text(encoding="utf-8"))["estimate"]
-        return Estimate(answer, written.with_suffix(".png").read_bytes())
+        stem = written.with_suffix("")
+        pictures = [Path(f"{stem}{of}.png") for of in ("", "-bounds")]
+        return Estimate(answer, [path.read_bytes() for path in pictures if path.exists()])
 
 
 def _written(folder: Path) -> dict[Path, int]:
@@ -77,10 +89,10 @@ def _written(folder: Path) -> dict[Path, int]:
 class Estimate:
     """Results with their errors: chance and the time step, not the model's own error."""
 
-    def __init__(self, answer: dict[str, Any], png: bytes) -> None:
+    def __init__(self, answer: dict[str, Any], pngs: list[bytes]) -> None:
         self.answer = answer
         """Everything, as `sandbox estimate --json` prints it; the values of all runs are in it."""
-        self._png = png
+        self._pngs = pngs
 
     @property
     def table(self) -> pandas.DataFrame:
@@ -97,12 +109,41 @@ class Estimate:
         names = [row["name"] for row in self.answer["results"]]
         return pandas.DataFrame(rows, index=pandas.Index(names, name="result"))
 
+    @property
+    def bounds(self) -> pandas.DataFrame:
+        """One row per bound, by result: the `bound`, the `share` of runs that are at most it, the number of runs `n`, and the
+        probability that the statement is true, `confidence`."""
+        import pandas
+
+        bounds = self.answer.get("bounds", [])
+        rows = [
+            {"bound": of["value"], "share": of["share"], "n": of["runs"], "confidence": of["confidence"]}
+            for of in bounds
+        ]
+        names = pandas.Index([of["name"] for of in bounds], name="result")
+        return pandas.DataFrame(rows, index=names, columns=["bound", "share", "n", "confidence"])
+
+    @property
+    def costs(self) -> pandas.DataFrame:
+        """One row per preset, with `costs=True`: its time `step`, the time of a run, `secs`, and `all_secs`, the time of as
+        many runs as give the errors of all results (NaN if no number does). The estimate itself took
+        `answer["secs"]`; all are seconds on one core."""
+        import pandas
+
+        costs = self.answer.get("costs", [])
+        names = pandas.Index([of["preset"] for of in costs], name="preset")
+        return pandas.DataFrame(costs, index=names, columns=["step", "secs", "all_secs"]).astype(float)
+
     def plot(self) -> Picture:
-        """The way to each result: means at each time step, errors by the number of runs and by computing time."""
-        return Picture(self._png)
+        """The way to each result: means at each time step, errors by the number of runs and by computing time. Without
+        results: the shares of runs below each bound."""
+        return Picture(self._pngs[0])
 
     def __repr__(self) -> str:
-        return repr(self.table)
+        return repr(self._main())
 
     def _repr_html_(self) -> str | None:
-        return self.table.to_html()
+        return self._main().to_html()
+
+    def _main(self) -> pandas.DataFrame:
+        return self.table if self.answer["results"] else self.bounds

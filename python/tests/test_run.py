@@ -199,3 +199,24 @@ def test_an_estimate_has_the_errors_asked_for(tmp_path):
     assert few.table["n"].tolist() == [4] and not few.table["reached"].any()
     with pytest.raises(sc.Error, match="no such result"):
         sc.estimate("evacuation", {"flow": "2%"}, **small)
+
+
+def test_a_bound_is_the_largest_of_the_runs_that_it_needs(tmp_path):
+    small = {"grids.0.columns": 4, "grids.0.rows": 4}
+    answer = sc.estimate("evacuation", bound={"time_secs": "80%"}, out=tmp_path, **small)
+    row = answer.bounds.loc["time_secs"]
+    values = answer.answer["bounds"][0]["values"]
+    # 1 - 0.8^14 = 0.956
+    assert row["n"] == len(values) == 14 and row["bound"] == max(values)
+    assert row["confidence"] == pytest.approx(1 - 0.8**14) and row["share"] == 0.8
+    assert answer.table.empty and answer.costs.empty and "time_secs" in repr(answer)
+    assert answer.plot().png.startswith(b"\x89PNG")
+    with pytest.raises(sc.Error, match="--error"):
+        sc.estimate("evacuation", **small)
+
+
+def test_costs_are_those_of_every_preset():
+    small = {"grids.0.columns": 4, "grids.0.rows": 4}
+    answer = sc.estimate("evacuation", {"time_secs": "20%"}, costs=True, **small)
+    assert answer.costs.index.tolist() == ["paper", "fast", "accurate"]
+    assert (answer.costs["secs"] > 0).all() and answer.costs["step"].tolist()[2] == 0.005

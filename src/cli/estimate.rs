@@ -95,7 +95,7 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
     }
     outputs.check()?;
     let store = Store::open(&options.out)?;
-    let runs = make(&question, &store, &Watch::new())?;
+    let runs = make(&question, &[], &store, &Watch::new())?;
     let answer = Answer {
         validation: Validated::of(&question)?,
         ..Answer::of(&runs)

@@ -44,22 +44,8 @@ pub fn curves(runs: &[&RunResult]) -> Vec<Curve> {
 
 /// The number of passages over time; `None` if the data of this name are not times.
 fn passages(runs: &[&RunResult], name: &str) -> Option<Curve> {
-    let times = runs.iter().map(|run| run.summary.data::<Vec<f64>>(name));
-    let times: Vec<Vec<f64>> = times.collect::<Option<_>>()?;
-    let last = times.iter().flatten().copied().fold(0.0, f64::max);
-    if last <= 0.0 || !times.iter().all(|times| times.is_sorted()) {
-        return None;
-    }
-    let at: Vec<f64> = (0..=POINTS)
-        .map(|k| last * f64::from(k) / f64::from(POINTS))
-        .collect();
-    let counts = times.iter().map(|times| {
-        let until = |at: &f64| times.partition_point(|time| time <= at);
-        at.iter().map(|at| Some(until(at) as f64)).collect()
-    });
-    let counts: Vec<Vec<Option<f64>>> = counts.collect();
-    let labels = ["time [s]", "passages"];
-    Some(Curve::of(name.to_owned(), labels, &at, &counts))
+    let times = runs.iter().map(|run| run.summary.data(name));
+    Curve::of_passages(name, &times.collect::<Option<Vec<_>>>()?)
 }
 
 /// The mean speed by density; `None` without the measurement.
@@ -94,6 +80,25 @@ impl Curve {
                 .filter_map(|(at, point)| Some((at, point?)))
                 .collect(),
         }
+    }
+
+    /// The number of passages over time, from the times of some runs; `None` without passages, or if the times are not
+    /// in order.
+    pub fn of_passages(name: &str, times: &[Vec<f64>]) -> Option<Self> {
+        let last = times.iter().flatten().copied().fold(0.0, f64::max);
+        if last <= 0.0 || !times.iter().all(|times| times.is_sorted()) {
+            return None;
+        }
+        let at: Vec<f64> = (0..=POINTS)
+            .map(|k| last * f64::from(k) / f64::from(POINTS))
+            .collect();
+        let counts = times.iter().map(|times| {
+            let until = |at: &f64| times.partition_point(|time| time <= at);
+            at.iter().map(|at| Some(until(at) as f64)).collect()
+        });
+        let counts: Vec<Vec<Option<f64>>> = counts.collect();
+        let labels = ["time [s]", "passages"];
+        Some(Self::of(name.to_owned(), labels, &at, &counts))
     }
 
     /// Its band and its line.

@@ -178,7 +178,7 @@ impl Answer {
 impl Row {
     fn of(runs: &Runs, k: usize, wanted: &Wanted) -> Option<Self> {
         let series = runs.series(k);
-        let means = series.means()?;
+        let means = series.means(&runs.priors[k])?;
         let confidence = runs.question.request.confidence;
         let (reached, limit) = means.reached(confidence);
         let levels = runs.levels.iter().zip(&series.values);

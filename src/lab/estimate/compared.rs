@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::prior::Prior;
 use super::series::{Reached, Series};
 use crate::lab::error::LabError;
 use crate::lab::jobs::read;
@@ -163,7 +164,7 @@ fn paired(a: &Row, b: &Row, confidence: f64) -> Option<Reached> {
     }
     let [x, y, difference] = all.map(|values| {
         let steps = steps.clone();
-        Series { steps, values }.means()
+        Series { steps, values }.means(&Prior::NONE)
     });
     let (x, y, difference) = (x?, y?, difference?);
     (difference.variance < x.variance + y.variance).then(|| difference.reached(confidence).0)

@@ -1,12 +1,14 @@
 //! How often intervals hold the value: estimates repeated with the runs of a pool.
 //!
-//! The pool has runs of a question at its four coarsest steps, with many seeds. An estimate is repeated with these runs
-//! in another order each time, and its interval is compared with the mean of all runs at the finest step, and with the
-//! limit that all runs of the pool together give.
+//! The pool has runs of a question at its four coarsest steps, with many seeds. An estimate is repeated with seeds drawn
+//! from it with replacement, as from an endless crowd of runs in which the pool's means are the true ones. Its interval
+//! is compared with the mean at the finest step, and with the limit that all runs of the pool together give. What the
+//! program knows of the scene itself does not count.
 
 use serde::Serialize;
 
-use super::plan::{Goal, MOST_PREDICTED, Offer, first_round, further, predicted};
+use super::plan::{Goal, Hope, MOST_PREDICTED, Offer, first_round, further, pilot, predicted};
+use super::prior::Prior;
 use super::question::{Question, QuestionError};
 use super::run::Runs;
 use super::series::{Means, Series};
@@ -25,6 +27,8 @@ pub(super) const CONFIDENCE: f64 = 0.95;
 const NORMAL: f64 = 1.959_963_984_540_054;
 /// How often the first step is halved.
 const HALVINGS: usize = 2;
+/// The most runs of an estimate at one step.
+const MOST_DRAWN: usize = 1000;
 /// Predicted numbers of runs within this factor of the true one count as right.
 const FACTOR: f64 = 1.5;
 /// The profiles.
@@ -48,9 +52,7 @@ const SCENES: [(&str, [&str; 3]); 2] = [
 /// The size of a study of intervals.
 #[derive(Debug, Clone, Copy)]
 pub struct Pool {
-    /// The number of runs at the finest step, whose mean is the reference.
-    pub reference: usize,
-    /// The number of runs at each other step.
+    /// The number of runs at each step.
     pub seeds: usize,
     /// The number of estimates of each result.
     pub repeats: usize,
@@ -59,13 +61,11 @@ pub struct Pool {
 impl Pool {
     /// The whole study.
     pub const WHOLE: Self = Self {
-        reference: 1000,
         seeds: 300,
         repeats: 200,
     };
     /// A check that everything works.
     pub const QUICK: Self = Self {
-        reference: 20,
         seeds: 20,
         repeats: 20,
     };
@@ -98,9 +98,10 @@ pub struct Covered {
     pub secs: f64,
     /// The number and time of the runs at the step that is cheapest if its error and the spread are known.
     pub known: Option<[f64; 2]>,
-    /// The share of estimates for which the number of runs predicted from another estimate is within a factor of 1.5.
-    pub predicted: f64,
-    /// The number of estimates that ended before the error asked for, for want of runs in the pool.
+    /// The shares of estimates for which the number of runs that another estimate lets expect, or the whole pool, is
+    /// within a factor of 1.5.
+    pub predicted: [f64; 2],
+    /// The number of estimates that ended before the error asked for, for want of draws.
     pub unfinished: usize,
 }
 
@@ -122,12 +123,7 @@ pub fn coverage(pool: Pool, store: &Store, listener: &dyn Listener) -> Result<Co
     for (file, errors) in SCENES {
         for profile in PROFILES {
             let question = question(file, profile, &errors)?;
-            let mut runs = Runs::none(&question)?;
-            let finest = question.start.saturating_sub(HALVINGS);
-            let mut wanted = vec![0; runs.levels.len()];
-            wanted[finest..].fill(pool.seeds);
-            wanted[finest] = pool.reference;
-            runs.make(&wanted, store, listener)?;
+            let (runs, finest) = pooled(&question, pool, store, listener)?;
             secs += runs.measured_secs();
             for k in 0..errors.len() {
                 let row = covered(&runs, k, finest, pool)?;
@@ -142,7 +138,22 @@ pub fn coverage(pool: Pool, store: &Store, listener: &dyn Listener) -> Result<Co
     Ok(Coverage { rows, secs, pool })
 }
 
-fn question(file: &str, profile: &str, errors: &[&str]) -> Result<Question, LabError> {
+/// The runs of a pool, and the number of its finest step. What is known of the scene itself does not count.
+pub(super) fn pooled<'a>(
+    question: &'a Question,
+    pool: Pool,
+    store: &Store,
+    listener: &dyn Listener,
+) -> Result<(Runs<'a>, usize), LabError> {
+    let mut runs = Runs::none(question, &[], Some(&question.title[0]))?;
+    let finest = question.start.saturating_sub(HALVINGS);
+    let mut wanted = vec![0; runs.levels.len()];
+    wanted[finest..].fill(pool.seeds);
+    runs.make(&wanted, store, listener)?;
+    Ok((runs, finest))
+}
+
+pub(super) fn question(file: &str, profile: &str, errors: &[&str]) -> Result<Question, LabError> {
     let invalid = |error: QuestionError| LabError::Data(error.to_string());
     let wanted: Result<Vec<Wanted>, String> = errors.iter().map(|text| text.parse()).collect();
     let request = Request {
@@ -185,39 +196,56 @@ fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, 
         .iter()
         .filter_map(|values| MeanStd::of(&values.iter().flatten().copied().collect::<Vec<_>>()))
         .collect();
-    let Some((finest_mean, whole)) = at_steps.first().zip(all.means()) else {
+    let Some((finest_mean, whole)) = at_steps.first().zip(all.means(&Prior::NONE)) else {
         return Err(LabError::missing(&question.title[0], &wanted.name));
     };
     let reference = whole.reached(CONFIDENCE).0;
+    let prior = &runs.priors[k];
+    let hope = Hope {
+        prior: prior.clone(),
+        tolerance: wanted.error,
+    };
+    let first = first_round(&[hope], offers, CONFIDENCE);
+    let first = first.unwrap_or_else(|| pilot(offers, question.start - finest));
+    let of_pool = Pooled {
+        all: &all,
+        offers,
+        first: &first,
+        prior,
+        wanted,
+    };
+    let references = [finest_mean.mean, reference.value];
     let estimate = |seed: usize| {
-        let order = shuffled(pool.seeds.min(pool.reference), seed as u64);
-        repeated(
-            &all,
-            &order,
-            offers,
-            question.start - finest,
-            wanted,
-            [finest_mean.mean, reference.value],
-        )
+        let draw = |k: usize| shuffled(pool.seeds, (seed * MOST_DRAWN + k) as u64)[0];
+        let order: Vec<usize> = (0..MOST_DRAWN).map(draw).collect();
+        of_pool.estimate(&order, references)
     };
     let estimates = each(pool.repeats, estimate)?;
     let count = estimates.len() as f64;
     let mean = |of: &dyn Fn(&Estimate) -> f64| estimates.iter().map(of).sum::<f64>() / count;
-    // Each estimate predicts the number of runs of the next one.
-    let pairs = estimates.iter().zip(estimates.iter().cycle().skip(1));
-    let right = pairs.filter(|(before, after)| {
-        let known = before.means.clone().map(|means| Goal {
-            means,
+    // The number of runs that is expected from these means, which a finished estimate or the whole pool has.
+    let expected = |means: &Means| -> usize {
+        let goal = Goal {
+            means: means.clone(),
             tolerance: wanted.error,
-        });
-        let start = question.start - finest;
-        known.is_some_and(|known| {
-            let (runs, _) = predicted(&[known], offers, start, (CONFIDENCE, MOST_PREDICTED));
-            let ratio = runs.iter().sum::<usize>() as f64 / after.runs as f64;
-            (1.0 / FACTOR..=FACTOR).contains(&ratio)
-        })
+        };
+        let limit = goal.means.limit();
+        let asked = (CONFIDENCE, MOST_PREDICTED);
+        let (runs, _) = predicted(&[(goal, limit)], offers, first.clone(), asked);
+        runs.iter().sum()
+    };
+    let is_right = |expected: usize, one: &Estimate| {
+        let ratio = expected as f64 / one.runs as f64;
+        (1.0 / FACTOR..=FACTOR).contains(&ratio)
+    };
+    let pairs = estimates.iter().zip(estimates.iter().cycle().skip(1));
+    let by_estimate = pairs.filter(|(before, after)| {
+        let means = before.means.as_ref();
+        means.is_some_and(|means| is_right(expected(means), after))
     });
-    let right = right.count() as f64;
+    let by_estimate = by_estimate.count() as f64 / count;
+    let of_all = expected(&whole);
+    let by_pool = estimates.iter().filter(|one| is_right(of_all, one)).count() as f64 / count;
     let allowed = wanted.error.of(reference.value);
     let known = at_steps.iter().zip(offers).filter_map(|(mean, offer)| {
         let room = allowed.powi(2) - (mean.mean - reference.value).powi(2);
@@ -240,73 +268,72 @@ fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, 
         runs: mean(&|one| one.runs as f64),
         secs: mean(&|one| one.secs),
         known: known.min_by(|a, b| a[1].total_cmp(&b[1])),
-        predicted: right / count,
+        predicted: [by_estimate, by_pool],
         unfinished: estimates.iter().filter(|one| !one.is_finished).count(),
     })
 }
 
-/// An estimate with the runs of a pool in this order.
-fn repeated(
-    all: &Series,
-    order: &[usize],
-    offers: &[Offer],
-    start: usize,
-    wanted: &Wanted,
-    references: [f64; 2],
-) -> Estimate {
-    let mut counts = first_round(offers.len(), start);
-    loop {
-        let values = all.values.iter().zip(&counts);
-        let drawn = Series {
-            steps: all.steps.clone(),
-            values: values
-                .map(|(values, &count)| order[..count].iter().map(|&k| values[k]).collect())
-                .collect(),
-        };
-        let Some(means) = drawn.means() else {
-            return Estimate {
-                held: [false; 2],
-                runs: 0,
-                secs: 0.0,
-                is_finished: false,
-                means: None,
-            };
-        };
-        let next = next(&means, &counts, offers, wanted);
-        let more = next.clone().unwrap_or_default();
-        let asked: Vec<usize> = counts
-            .iter()
-            .zip(&more)
-            .map(|(all, more)| all + more)
-            .collect();
-        let is_finished = next.is_none();
-        if is_finished || asked.iter().any(|&count| count > order.len()) {
-            let reached = means.reached(CONFIDENCE).0;
-            let secs = counts
-                .iter()
-                .zip(offers)
-                .map(|(count, offer)| *count as f64 * offer.secs);
-            return Estimate {
-                held: references.map(|value| (reached.value - value).abs() <= reached.error),
-                runs: counts.iter().sum(),
-                secs: secs.sum(),
-                is_finished,
-                means: Some(means),
-            };
-        }
-        counts = asked;
-    }
+/// Where the runs of an estimate come from, and what is known before.
+struct Pooled<'a> {
+    all: &'a Series,
+    offers: &'a [Offer],
+    first: &'a [usize],
+    prior: &'a Prior,
+    wanted: &'a Wanted,
 }
 
-/// The further runs of an estimate.
-fn next(means: &Means, counts: &[usize], offers: &[Offer], wanted: &Wanted) -> Option<Vec<usize>> {
-    let goal = Goal {
-        means: means.clone(),
-        tolerance: wanted.error,
-    };
-    let offers = offers.iter().zip(counts);
-    let offers: Vec<Offer> = offers
-        .map(|(offer, &runs)| Offer { runs, ..*offer })
-        .collect();
-    further(&[goal], &offers, CONFIDENCE)
+impl Pooled<'_> {
+    /// An estimate with the runs in this order.
+    fn estimate(&self, order: &[usize], references: [f64; 2]) -> Estimate {
+        let mut counts = self.first.to_vec();
+        loop {
+            let values = self.all.values.iter().zip(&counts);
+            let drawn = Series {
+                steps: self.all.steps.clone(),
+                values: values
+                    .map(|(values, &count)| order[..count].iter().map(|&k| values[k]).collect())
+                    .collect(),
+            };
+            let Some(means) = drawn.means(self.prior) else {
+                return Estimate {
+                    held: [false; 2],
+                    runs: 0,
+                    secs: 0.0,
+                    is_finished: false,
+                    means: None,
+                };
+            };
+            let next = self.next(&means, &counts);
+            let more = next.clone().unwrap_or_default();
+            let asked = counts.iter().zip(&more);
+            let asked: Vec<usize> = asked.map(|(all, more)| all + more).collect();
+            let is_finished = next.is_none();
+            if is_finished || asked.iter().any(|&count| count > order.len()) {
+                let reached = means.reached(CONFIDENCE).0;
+                let secs = counts.iter().zip(self.offers);
+                let secs = secs.map(|(count, offer)| *count as f64 * offer.secs);
+                return Estimate {
+                    held: references.map(|value| (reached.value - value).abs() <= reached.error),
+                    runs: counts.iter().sum(),
+                    secs: secs.sum(),
+                    is_finished,
+                    means: Some(means),
+                };
+            }
+            counts = asked;
+        }
+    }
+
+    /// The further runs of an estimate.
+    fn next(&self, means: &Means, counts: &[usize]) -> Option<Vec<usize>> {
+        let goal = Goal {
+            means: means.clone(),
+            tolerance: self.wanted.error,
+        };
+        let offers = self.offers.iter().zip(counts);
+        let offers: Vec<Offer> = offers
+            .map(|(offer, &runs)| Offer { runs, ..*offer })
+            .collect();
+        further(&[goal], &offers, CONFIDENCE)
+    }
 }

@@ -40,14 +40,13 @@ impl Coverage {
         format!(
             "{}\n{} % intervals hold the value in {} of all estimates; worst row {:.1} %. Median over the rows: {:.1} \
              times the runs and {:.1} times the time of an estimate for which spread and error of the step are known. \
-             The pools of {} runs at the finest step and {} at each other took {:.1} hours on one core.\n",
+             The pools of {} runs at each step took {:.2} hours on one core.\n",
             table(&self.table()),
             100.0 * CONFIDENCE,
             self.total(),
             Range::of(&worst.collect::<Vec<_>>()).minimum,
             ratio(0, &|row| row.runs),
             ratio(1, &|row| row.secs),
-            self.pool.reference,
             self.pool.seeds,
             self.secs / 3600.0,
         )
@@ -76,7 +75,10 @@ impl Coverage {
             .fixed("time, times that if known", 1, |row| {
                 row.known.map(|known| row.secs / known[1])
             })
-            .fixed("predicted [%]", 0, |row| 100.0 * row.predicted)
+            .fixed("predicted by another [%]", 0, |row| {
+                100.0 * row.predicted[0]
+            })
+            .fixed("by the pool [%]", 0, |row| 100.0 * row.predicted[1])
             .column("unfinished", |row| row.unfinished)
             .table()
     }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use rayon::current_num_threads;
 use serde::Serialize;
 
+use super::limit::Limit;
 use super::plan::{Goal, MOST_PREDICTED, predicted};
 use super::question::Question;
 use super::run::Runs;
@@ -43,6 +44,7 @@ impl Forecast {
         if question.request.wanted.is_empty() {
             return Ok(None);
         }
+        let runs = Runs::none(question, &[], None)?;
         let [scenario, profile] = &question.title;
         let mut known: Vec<RunResult> = store.all();
         known.retain(|run| run.summary.profile == *profile && run.summary.frames > 0);
@@ -71,11 +73,10 @@ impl Forecast {
             return Ok(None);
         };
         known.retain(|run| run.summary.scenario == based_on);
-        let runs = Runs::none(question)?;
         let offers = runs.offers();
         let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
         let step = |run: &RunResult| run.summary.time_secs / run.summary.frames as f64;
-        let goals = wanted.iter().map(|wanted| {
+        let goals = wanted.iter().zip(&runs.priors).map(|(wanted, prior)| {
             let values = steps.iter().map(|offered| {
                 let own = known
                     .iter()
@@ -86,23 +87,22 @@ impl Forecast {
                 steps: steps.clone(),
                 values: values.collect(),
             };
-            let means = series.means()?;
-            Some(Goal {
-                means,
-                tolerance: wanted.error,
-            })
+            let means = series.means(prior)?;
+            let tolerance = wanted.error;
+            let limit = means.limit();
+            Some((Goal { means, tolerance }, limit))
         });
-        let Some(goals) = goals.collect::<Option<Vec<Goal>>>() else {
+        let Some(goals) = goals.collect::<Option<Vec<(Goal, Limit)>>>() else {
             return Ok(None);
         };
         let Request {
             confidence, limits, ..
         } = question.request;
         let asked = (confidence, limits.runs.min(MOST_PREDICTED));
-        let (counts, errors) = predicted(&goals, &offers, question.start, asked);
+        let (counts, errors) = predicted(&goals, &offers, runs.first_round(None), asked);
         let short = wanted.iter().zip(&goals).zip(errors);
-        let short = short.filter_map(|((wanted, goal), error)| {
-            let value = goal.means.reached(confidence).0.value;
+        let short = short.filter_map(|((wanted, (_, limit)), error)| {
+            let value = limit.value;
             let reached = Reached {
                 value,
                 error,

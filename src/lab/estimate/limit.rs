@@ -6,9 +6,8 @@
 //!
 //! with μ its mean in the limit, β the error of the paper's step, and ε the chance of the seed, normal with a standard
 //! deviation σ that does not depend on h. μ has a flat prior; p is one of nine orders between 0.4 and 2.5, of which 1
-//! is the most likely at first; β is normal with mean 0 and a standard deviation of 0.3, 3 or 10 σ. The weights of
-//! orders and sizes are those with which intervals hold the value as often as they say (docs/accuracy.md). Given p and
-//! the size of β, the posterior of (μ, β) is normal; the posterior of μ is the mixture over all p and sizes, weighted
+//! is the most likely at first; β is normal with mean 0 and a standard deviation of 0.1, 0.3, 1, 3 or 10 σ, whose weights
+//! are the shares of such sizes among results that were measured before (`prior.rs`). Given p and the size of β, the posterior of (μ, β) is normal; the posterior of μ is the mixture over all p and sizes, weighted
 //! by how likely they make the data.
 //!
 //! Steps may be too long for any order: social forces in a jam change the flow by half from one step to the next. So
@@ -21,7 +20,7 @@
 use std::f64::consts::TAU;
 
 /// h₁, seconds.
-const REFERENCE_STEP: f64 = crate::engine::clock::PAPER_TIME_STEP;
+pub(super) const REFERENCE_STEP: f64 = crate::engine::clock::PAPER_TIME_STEP;
 /// The orders p, and their weights.
 const ORDERS: [(f64, f64); 9] = [
     (0.4, 0.04),
@@ -34,8 +33,8 @@ const ORDERS: [(f64, f64); 9] = [
     (2.0, 0.08),
     (2.5, 0.04),
 ];
-/// Sizes of the error β in standard deviations of a run, and their weights.
-const SIZES: [(f64, f64); 3] = [(0.3, 0.7), (3.0, 0.2), (10.0, 0.1)];
+/// Sizes of the error β in standard deviations of a run; `prior.rs` has their weights.
+pub(super) const SIZES: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 /// The prior weight of a coarsest step that is too long, and the range of its mean, in standard deviations of a run.
 const TOO_LONG: (f64, f64) = (0.1, 20.0);
 /// The part of the finest step's error that counts as a standard error.
@@ -88,7 +87,8 @@ struct Component {
 
 impl Limit {
     /// The limit of measurements at some levels, from the finest to the coarsest. `variance` is that of single runs.
-    pub fn of(levels: &[Level], variance: f64) -> Self {
+    /// `shares` are the weights of [`SIZES`].
+    pub fn of(levels: &[Level], variance: f64, shares: &[f64; SIZES.len()]) -> Self {
         // In standard deviations of a run, from the finest level's mean: sums of squares of the values themselves would
         // lose digits.
         let origin = levels.first().map_or(0.0, |level| level.mean);
@@ -115,7 +115,7 @@ impl Limit {
         });
         for used in [Some((belongs, levels)), free].into_iter().flatten() {
             for (order, likely) in ORDERS {
-                for (size, prior) in SIZES {
+                for (size, prior) in SIZES.into_iter().zip(shares) {
                     let of = component(used.1, order, size * spread);
                     logs.push(used.0 + of.0 + f64::ln(likely * prior));
                     components.push(of.1);
@@ -153,8 +153,8 @@ impl Limit {
         }
     }
 
-    /// The limit of runs that all have this value.
-    fn exact(value: f64) -> Self {
+    /// The limit that has this value, at all steps.
+    pub(super) fn exact(value: f64) -> Self {
         Self {
             components: Vec::new(),
             value,

@@ -5,15 +5,18 @@
 //! and that of the time step, from the means at different steps (`limit.rs`). `plan.rs` chooses which runs come next.
 
 mod answer;
+mod begin;
 mod bounds;
 mod compared;
 mod costs;
 mod coverage;
 mod coverage_report;
 mod forecast;
+mod knowledge;
 mod limit;
 mod pictures;
 mod plan;
+mod prior;
 mod question;
 mod report;
 mod row_pictures;
@@ -29,9 +32,11 @@ pub use compared::{Change, Compared, compared, is_answer};
 pub use costs::{Cost, OfPreset, Timed};
 pub use coverage::{Coverage, Covered, Pool, coverage};
 pub use forecast::Forecast;
+pub use knowledge::{Knowledge, knowledge};
 pub use limit::{Level, Limit};
 pub use pictures::{bound_sheet, curve_sheet, sheet};
-pub use plan::{Goal, Offer, PILOT, further, predicted};
+pub use plan::{Goal, Hope, Offer, PILOT, first_round, further, pilot, predicted};
+pub use prior::{Known, Prior};
 pub use question::{Question, QuestionError, Rung};
 pub use rows::{Answers, Questions};
 pub use run::{Look, Runs, run};

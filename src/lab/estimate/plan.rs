@@ -6,13 +6,16 @@
 //! depend on clocks and threads.
 
 use super::limit::Limit;
+use super::prior::Prior;
 use super::series::Means;
 use super::wanted::Tolerance;
 
-/// The runs of the first round at each of its two steps.
+/// The runs of the first round at each of its two steps, if nothing is known before.
 pub const PILOT: usize = 5;
 /// A plan with at most this number of runs is carried out at once.
 const FEW: usize = 6;
+/// The most runs that are tried to find the first step.
+const MOST_TRIED: usize = 1000;
 /// Predictions without a limit end at this number of runs.
 pub(super) const MOST_PREDICTED: usize = 100_000;
 
@@ -39,10 +42,7 @@ pub struct Goal {
 /// all goals are reached.
 pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<usize>> {
     let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
-    let expected: Vec<Limit> = goals
-        .iter()
-        .map(|goal| Limit::of(&goal.means.levels, goal.means.variance))
-        .collect();
+    let expected: Vec<Limit> = goals.iter().map(|goal| goal.means.limit()).collect();
     let excess = |plan: &[usize]| -> f64 {
         let goals = goals.iter().zip(&expected);
         let after = goals.map(|(goal, expected)| {
@@ -92,39 +92,81 @@ pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<
     Some(plan)
 }
 
-/// The numbers of runs of the first round: at the step with number `start`, and at the next coarser one, or else at the
-/// next finer one.
-pub fn first_round(offers: usize, start: usize) -> Vec<usize> {
-    let other = if start + 1 < offers {
-        start + 1
-    } else {
-        start.saturating_sub(1)
-    };
-    let runs = |k| if k == start || k == other { PILOT } else { 0 };
-    (0..offers).map(runs).collect()
+/// A result before its first run.
+#[derive(Debug, Clone)]
+pub struct Hope {
+    /// What is known about it.
+    pub prior: Prior,
+    /// The error asked for.
+    pub tolerance: Tolerance,
 }
 
-/// The number of runs at each of `offers` that an estimate is expected to need, from what other runs say of its goals:
-/// at most `most`, or those of the first round. Also the errors that they are expected to give, half widths in the
-/// order of the goals.
+impl Hope {
+    /// As a goal whose value is 1; `None` if no spread is known, or if the error is asked for in the result's unit.
+    fn goal(&self) -> Option<Goal> {
+        let means = self.prior.expected()?;
+        let tolerance = self.tolerance;
+        matches!(tolerance, Tolerance::Relative(_)).then_some(Goal { means, tolerance })
+    }
+}
+
+/// The numbers of runs of the first round, if nothing is known: some at the step with number `start`, and at the next
+/// coarser one, or else at the next finer one.
+pub fn pilot(offers: &[Offer], start: usize) -> Vec<usize> {
+    let other = match start + 1 < offers.len() {
+        true => start + 1,
+        false => start.saturating_sub(1),
+    };
+    let runs = |k| if k == start || k == other { PILOT } else { 0 };
+    (0..offers.len()).map(runs).collect()
+}
+
+/// The numbers of runs of the first round, if enough is known about all results: a few runs at the step from which on
+/// the whole estimate is expected to be cheapest.
+pub fn first_round(hopes: &[Hope], offers: &[Offer], confidence: f64) -> Option<Vec<usize>> {
+    let only = |at: usize, count: usize| {
+        let mut runs = vec![0; offers.len()];
+        runs[at] = count;
+        runs
+    };
+    let goals: Option<Vec<Goal>> = hopes.iter().map(Hope::goal).collect();
+    let known: Vec<(Goal, Limit)> = goals?
+        .into_iter()
+        .map(|goal| (goal, Limit::exact(1.0)))
+        .collect();
+    let few = hopes.iter().map(|hope| hope.prior.first_runs()).max();
+    let few = few?;
+    let cost = |at: usize| -> f64 {
+        let asked = (confidence, MOST_TRIED);
+        let (counts, errors) = predicted(&known, offers, only(at, few), asked);
+        let secs = offers.iter().zip(counts);
+        let secs: f64 = secs.map(|(offer, runs)| offer.secs * runs as f64).sum();
+        // Errors that are not reached cost as many times more.
+        let goals = known.iter().zip(errors);
+        let missing = goals.map(|((goal, _), error)| (error / goal.tolerance.of(1.0)).max(1.0));
+        secs * missing.product::<f64>().powi(2)
+    };
+    let costs: Vec<f64> = (0..offers.len()).map(cost).collect();
+    let cheapest = (0..offers.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]));
+    Some(only(cheapest?, few))
+}
+
+/// The number of runs at each of `offers` that an estimate is expected to need that begins with `first`, from what is
+/// known of its goals and their limits: at most `most`, or those of the first round. Also the errors that they are
+/// expected to give, half widths in the order of the goals.
 pub fn predicted(
-    known: &[Goal],
+    known: &[(Goal, Limit)],
     offers: &[Offer],
-    start: usize,
+    first: Vec<usize>,
     (confidence, most): (f64, usize),
 ) -> (Vec<usize>, Vec<f64>) {
-    let expected: Vec<Limit> = known
-        .iter()
-        .map(|goal| Limit::of(&goal.means.levels, goal.means.variance))
-        .collect();
     let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
     let mut offers = offers.to_vec();
-    let first = first_round(offers.len(), start);
     let begun = offers.iter_mut().zip(first);
     begun.for_each(|(offer, runs)| offer.runs = runs);
     loop {
         let counts: Vec<usize> = offers.iter().map(|offer| offer.runs).collect();
-        let goals = known.iter().zip(&expected).map(|(goal, expected)| Goal {
+        let goals = known.iter().map(|(goal, expected)| Goal {
             means: goal.means.afresh(expected, &steps, &counts),
             tolerance: goal.tolerance,
         });

@@ -64,25 +64,23 @@ impl<'a> Questions<'a> {
         ends.map(|end| format!("{name}.{end}")).collect()
     }
 
-    /// Makes the runs of all rows, row by row.
+    /// Makes the runs of all rows, row by row: each row knows the results of the rows before it.
     ///
     /// # Errors
     /// As [`run`](fn@super::run).
     pub fn answer(&self, store: &Store, listener: &dyn Listener) -> Result<Answers<'a>, LabError> {
         let all = self.questions.len();
-        let rows = self
-            .questions
-            .iter()
-            .enumerate()
-            .map(|(k, (cell, question))| {
-                listener.notes(&format!("row {} of {all}: {cell}", k + 1));
-                let runs = run(question, store, listener)
-                    .map_err(|error| LabError::Failed(format!("{cell}: {error}")))?;
-                Ok((*cell, Answer::of(&runs)))
-            });
+        let (mut rows, mut known) = (Vec::new(), Vec::new());
+        for (k, (cell, question)) in self.questions.iter().enumerate() {
+            listener.notes(&format!("row {} of {all}: {cell}", k + 1));
+            let runs = run(question, &known, store, listener)
+                .map_err(|error| LabError::Failed(format!("{cell}: {error}")))?;
+            known.extend(runs.known());
+            rows.push((*cell, Answer::of(&runs)));
+        }
         Ok(Answers {
             study: self.study,
-            rows: rows.collect::<Result<_, LabError>>()?,
+            rows,
         })
     }
 }

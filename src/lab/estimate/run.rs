@@ -6,7 +6,8 @@ use rayon::current_num_threads;
 
 use super::bounds::Sample;
 use super::costs::Timed;
-use super::plan::{Goal, Offer, first_round, further};
+use super::plan::{Goal, Offer, further};
+use super::prior::{Known, Prior};
 use super::question::{Question, Rung};
 use super::series::{Reached, Series};
 use crate::lab::error::LabError;
@@ -51,22 +52,25 @@ pub struct Runs<'a> {
     pub sample: Option<Sample>,
     /// Runs with each preset, if they were asked for.
     pub timed: Vec<Timed>,
+    /// What was known about the wanted results before.
+    pub priors: Vec<Prior>,
     /// Why no more runs were made, if an error is larger than asked for.
     pub stopped: Option<String>,
 }
 
 /// Runs the question's scenario until all errors are as small as asked for, or a limit is reached. Finished runs are
-/// taken from the store.
+/// taken from the store. `rows` are the results of finished rows of the same study.
 ///
 /// # Errors
 /// Results cannot be stored, a run is invalid, or a wanted result has no value.
 pub fn run<'a>(
     question: &'a Question,
+    rows: &[Known],
     store: &Store,
     listener: &dyn Listener,
 ) -> Result<Runs<'a>, LabError> {
     let begin = Instant::now();
-    let mut runs = Runs::none(question)?;
+    let mut runs = Runs::none(question, rows, None)?;
     let elapsed = || begin.elapsed().as_secs_f64();
     // First the bounds: their number of runs is fixed, and these runs count for the errors, too.
     if !question.request.bounds.is_empty() {
@@ -82,8 +86,12 @@ pub fn run<'a>(
 }
 
 impl<'a> Runs<'a> {
-    /// No runs yet.
-    pub(super) fn none(question: &'a Question) -> Result<Self, LabError> {
+    /// No runs yet; what ships with the program counts without the scene `but`.
+    pub(super) fn none(
+        question: &'a Question,
+        rows: &[Known],
+        but: Option<&str>,
+    ) -> Result<Self, LabError> {
         let level = |&rung: &Rung| {
             let case = question.case(rung, 0);
             Ok(StepRuns {
@@ -92,6 +100,10 @@ impl<'a> Runs<'a> {
                 expected_secs: case.map_err(|error| failed(question, error))?.expected_secs,
             })
         };
+        let wanted = question.request.wanted.iter();
+        let profile = &question.title[1];
+        let priors = wanted.map(|wanted| Prior::of(profile, &wanted.name, rows, but));
+        let priors = priors.collect();
         let levels: Result<_, LabError> = question.rungs.iter().map(level).collect();
         Ok(Self {
             question,
@@ -99,6 +111,7 @@ impl<'a> Runs<'a> {
             looks: Vec::new(),
             sample: None,
             timed: Vec::new(),
+            priors,
             stopped: None,
         })
     }
@@ -110,7 +123,7 @@ impl<'a> Runs<'a> {
         store: &Store,
         listener: &dyn Listener,
     ) -> Result<(), LabError> {
-        let first = first_round(self.levels.len(), self.question.start);
+        let first = self.first_round(Some(listener));
         let made = self.levels.iter().map(|level| level.results.len());
         let mut wanted: Vec<usize> = first.into_iter().zip(made).map(|(a, b)| a.max(b)).collect();
         loop {
@@ -260,7 +273,11 @@ impl<'a> Runs<'a> {
 
     /// The values of the wanted result with this number.
     pub fn series(&self, wanted: usize) -> Series {
-        let name = &self.question.request.wanted[wanted].name;
+        self.series_of(&self.question.request.wanted[wanted].name)
+    }
+
+    /// The values of the result with this name.
+    pub(super) fn series_of(&self, name: &str) -> Series {
         let value = |result: &Result<RunResult, String>| {
             let result = result.as_ref().ok()?;
             number(result, name)
@@ -289,7 +306,7 @@ impl<'a> Runs<'a> {
         let wanted = self.question.request.wanted.iter().enumerate();
         let goal = |(k, wanted): (usize, &super::Wanted)| {
             Some(Goal {
-                means: self.series(k).means()?,
+                means: self.series(k).means(&self.priors[k])?,
                 tolerance: wanted.error,
             })
         };
@@ -300,7 +317,9 @@ impl<'a> Runs<'a> {
     fn look(&mut self) -> Result<(), LabError> {
         let confidence = self.question.request.confidence;
         let count = self.question.request.wanted.len();
-        let means: Vec<_> = (0..count).map(|k| self.series(k).means()).collect();
+        let means: Vec<_> = (0..count)
+            .map(|k| self.series(k).means(&self.priors[k]))
+            .collect();
         if let Some(k) = means.iter().position(Option::is_none) {
             return Err(LabError::Data(self.without_values(k)));
         }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::limit::{Level, Limit};
+use super::prior::Prior;
 use super::wanted::Tolerance;
 use crate::analysis::round;
 use crate::analysis::statistics::{MeanStd, student};
@@ -37,7 +38,11 @@ pub struct Means {
     /// The variance of single runs, over all levels.
     pub variance: f64,
     /// Its degrees of freedom.
-    degrees: usize,
+    pub(super) degrees: f64,
+    /// Those that come from these runs, and not from what was known before.
+    pub(super) own_degrees: f64,
+    /// What was known before.
+    pub(super) prior: Prior,
 }
 
 impl Reached {
@@ -50,9 +55,9 @@ impl Reached {
 }
 
 impl Series {
-    /// Mean at each step and variance; `None` with fewer than two values at any step.
-    pub fn means(&self) -> Option<Means> {
-        let (mut levels, mut squares, mut degrees) = (Vec::new(), 0.0, 0);
+    /// Mean at each step and variance, of which `prior` was known before; `None` with fewer than two values at any step.
+    pub fn means(&self, prior: &Prior) -> Option<Means> {
+        let (mut levels, mut squares, mut own_degrees) = (Vec::new(), 0.0, 0.0);
         for (&step, values) in self.steps.iter().zip(&self.values) {
             let values: Vec<f64> = values.iter().flatten().copied().collect();
             let Some(of) = MeanStd::of(&values) else {
@@ -60,13 +65,20 @@ impl Series {
             };
             let (runs, mean) = (of.count, of.mean);
             levels.push(Level { step, runs, mean });
-            degrees += runs - 1;
+            own_degrees += (runs - 1) as f64;
             squares += of.std().map_or(0.0, |std| (runs - 1) as f64 * std * std);
         }
-        (degrees > 0).then(|| Means {
+        let mean = levels
+            .first()
+            .filter(|_| own_degrees > 0.0)
+            .map(|level: &Level| level.mean)?;
+        let [variance, degrees] = prior.variance(squares, own_degrees, mean);
+        Some(Means {
             levels,
-            variance: squares / degrees as f64,
+            variance,
             degrees,
+            own_degrees,
+            prior: prior.clone(),
         })
     }
 }
@@ -74,12 +86,17 @@ impl Series {
 impl Means {
     /// The half width of a confidence interval, in standard errors.
     pub fn width(&self, confidence: f64) -> f64 {
-        student(self.degrees, confidence).unwrap_or(f64::INFINITY)
+        student((self.degrees as usize).max(1), confidence).unwrap_or(f64::INFINITY)
+    }
+
+    /// The value in the limit of fine steps.
+    pub fn limit(&self) -> Limit {
+        Limit::of(&self.levels, self.variance, &self.prior.shares)
     }
 
     /// The value in the limit of fine steps with its errors.
     pub fn reached(&self, confidence: f64) -> (Reached, Limit) {
-        let limit = Limit::of(&self.levels, self.variance);
+        let limit = self.limit();
         let width = self.width(confidence);
         let of_step = (limit.variance - limit.from_seeds).max(0.0);
         let reached = Reached {
@@ -93,7 +110,7 @@ impl Means {
 
     /// By how much the variance of the limit exceeds what the error allows, as a logarithm; 0 if it does not.
     pub fn excess(&self, tolerance: Tolerance, confidence: f64) -> f64 {
-        let limit = Limit::of(&self.levels, self.variance);
+        let limit = self.limit();
         let allowed = tolerance.of(limit.value) / self.width(confidence);
         match limit.variance > 0.0 {
             true => (limit.variance.sqrt() / allowed).ln().max(0.0),
@@ -103,10 +120,9 @@ impl Means {
 
     /// Means of these numbers of runs at each of `steps`, whose means are as expected and whose spread is known.
     pub fn afresh(&self, expected: &Limit, steps: &[f64], counts: &[usize]) -> Self {
-        let degrees = counts.iter().map(|runs| runs.saturating_sub(1)).sum();
         let none = Self {
             levels: Vec::new(),
-            degrees,
+            degrees: self.prior.degrees(),
             ..self.clone()
         };
         none.with(expected, steps, counts)
@@ -117,8 +133,12 @@ impl Means {
         let mut after = self.clone();
         for (&step, &runs) in steps.iter().zip(further).filter(|(_, runs)| **runs > 0) {
             match after.levels.iter_mut().find(|level| level.step == step) {
-                Some(level) => level.runs += runs,
+                Some(level) => {
+                    level.runs += runs;
+                    after.degrees += runs as f64;
+                }
                 None => {
+                    after.degrees += (runs - 1) as f64;
                     let mean = expected.at(step);
                     after.levels.push(Level { step, runs, mean });
                 }

@@ -2,6 +2,7 @@
 
 use super::check::Runs;
 use super::keys::{Case, Check, Diagram, Expected};
+use crate::lab::curves::Curve;
 use crate::lab::gallery::{BAND, band, curve, distinct, with_legend};
 use crate::output::colors::Rgb;
 use crate::output::plot::{Axis, BLACK, GRAY, Mark, Panel, Point, Sheet, Style, line_color};
@@ -190,28 +191,30 @@ fn single_file(case: &Case, runs: &[Runs]) -> Option<Panel> {
     Some(speeds(title, "density [P/m]", 2.0, marks))
 }
 
-/// The number of people past a line over time, and the measured flow, or the number in the data.
+/// The mean number of people past a line over time with its band, and the measured flow, or the number in the data.
 fn passages(line: &Line, runs: &[Runs]) -> Option<Panel> {
-    let mut marks = Vec::new();
+    let (mut bands, mut lines) = (Vec::new(), Vec::new());
     let (mut latest, mut most) = (0.0_f64, 0.0_f64);
     let mut begins = f64::INFINITY;
     for (profile, color) in profiles(runs) {
-        for run in runs.iter().filter(|run| run.profile() == profile) {
-            let Some(steps) = run.of(line.run).and_then(|run| steps(run, line.name)) else {
-                continue;
-            };
-            let [end, count] = steps.last().copied().unwrap_or_default();
-            (latest, most) = (latest.max(end), most.max(count));
-            let tenth = steps.get((BEGINNING * steps.len() as f64) as usize);
-            begins = tenth.map_or(f64::INFINITY, |[time, _]| *time).min(begins);
-            let is_first = run.seed() == runs[0].seed();
-            let label = if is_first { profile } else { "" };
-            marks.push(Mark::Line(steps, Style::full(color, 1.0, label)));
-        }
+        let own = runs.iter().filter(|run| run.profile() == profile);
+        let times = own.filter_map(|run| run.of(line.run)?.data(line.name));
+        let Some(curve) = Curve::of_passages(line.name, &times.collect::<Vec<_>>()) else {
+            continue;
+        };
+        let (end, last) = *curve.points.last()?;
+        (latest, most) = (latest.max(end), most.max(last.mean));
+        let points = curve.points.iter();
+        let begun = points.filter(|(_, point)| point.mean >= BEGINNING * last.mean);
+        begins = begun.map(|(time, _)| *time).fold(begins, f64::min);
+        let [band, mean] = curve.marks(color, profile);
+        bands.push(band);
+        lines.push(mean);
     }
     if !begins.is_finite() {
         return None;
     }
+    let mut marks = [bands, lines].concat();
     let first = BEGINNING * most;
     let until = begins + (most - first) / line.measured[0];
     let (measured, style) = match runs.first().and_then(|run| run.data(line.run)) {

@@ -1,0 +1,111 @@
+//! Spreads and errors of the step in many scenes, for the file that ships with the program.
+
+use serde_json::{Value, json};
+
+use super::coverage::{Pool, pooled, question};
+use super::prior::{Known, Prior};
+use crate::analysis::round;
+use crate::lab::error::LabError;
+use crate::output::table::Table;
+use crate::runs::job::Listener;
+use crate::runs::store::Store;
+
+/// The profiles.
+const PROFILES: [&str; 9] = [
+    "sph",
+    "walk+sph",
+    "sf->sph",
+    "rvo->sph",
+    "steer+sph",
+    "sf+sph",
+    "rvo+sph",
+    "sf",
+    "rvo",
+];
+/// The scenes, relative to the shipped scenarios, with the number of profiles whose runs are made.
+const SCENES: [(&str, usize); 7] = [
+    ("evacuation.json", 4),
+    ("validation/gap.json", 5),
+    ("validation/door.json", 9),
+    ("validation/entrance.json", 9),
+    ("validation/corner.json", 9),
+    ("validation/corridor.json", 9),
+    ("validation/two_ways.json", 9),
+];
+/// The number of runs at each step.
+const SEEDS: usize = 20;
+
+/// Results of many scenes.
+pub struct Knowledge {
+    known: Vec<Known>,
+    secs: f64,
+}
+
+/// Makes the runs that are not in the store.
+///
+/// # Errors
+/// A run fails, or results cannot be stored.
+pub fn knowledge(store: &Store, listener: &dyn Listener) -> Result<Knowledge, LabError> {
+    let (mut known, mut secs) = (Vec::new(), 0.0);
+    let pool = Pool {
+        seeds: SEEDS,
+        repeats: 0,
+    };
+    for (file, profiles) in SCENES {
+        for profile in &PROFILES[..profiles] {
+            let question = question(file, profile, &[])?;
+            let (runs, _) = pooled(&question, pool, store, listener)?;
+            secs += runs.measured_secs();
+            let results = question.names.iter().filter_map(|name| {
+                let means = runs.series_of(name).means(&Prior::NONE)?;
+                Known::of(&question.title, name, &means)
+            });
+            known.extend(results);
+        }
+    }
+    Ok(Knowledge { known, secs })
+}
+
+impl Knowledge {
+    /// As a file: one line per result.
+    pub fn file(&self) -> String {
+        let lines = self.known.iter();
+        let lines = lines.map(|known| Known {
+            spread: short(known.spread),
+            error: short(known.error),
+            error_std: known.error_std.map(short),
+            ..known.clone()
+        });
+        let lines: Vec<String> = lines
+            .filter_map(|known| serde_json::to_string(&known).ok())
+            .collect();
+        format!("[\n{}\n]\n", lines.join(",\n"))
+    }
+
+    /// As a table.
+    pub fn table(&self) -> Table {
+        Table::of(&self.known)
+            .column("scene", |known| known.scene.as_str())
+            .column("profile", |known| known.profile.as_str())
+            .column("result", |known| known.result.as_str())
+            .fixed("spread [%]", 2, |known| 100.0 * known.spread)
+            .fixed("error at 0.02 s [spreads]", 2, |known| known.error)
+            .table()
+    }
+
+    /// For a terminal.
+    pub fn text(&self) -> String {
+        let hours = round::brief(self.secs / 3600.0);
+        format!("{}\n{hours} hours on one core.\n", self.table().text())
+    }
+
+    /// As one object.
+    pub fn json(&self) -> Value {
+        json!({ "known": self.known, "secs": self.secs })
+    }
+}
+
+/// A number with three digits.
+fn short(number: f64) -> f64 {
+    format!("{number:.2e}").parse().unwrap_or(number)
+}

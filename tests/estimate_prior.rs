@@ -1,0 +1,169 @@
+//! What is known about a result before its first run: it saves runs, and wrong knowledge does no harm.
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use sandbox::lab::estimate::{
+    Goal, Hope, Known, Means, Offer, Prior, Series, Tolerance, first_round, further,
+};
+
+/// Finished rows of a study with this spread, and these errors of the paper's step.
+fn rows(spread: f64, errors: &[f64]) -> Vec<Known> {
+    let row = |&error: &f64| Known {
+        scene: "room".into(),
+        profile: "sph".into(),
+        result: "flow_per_s".into(),
+        spread,
+        degrees: 20.0,
+        error,
+        error_std: Some(0.3),
+    };
+    errors.iter().map(row).collect()
+}
+
+fn prior(spread: f64, errors: &[f64]) -> Prior {
+    Prior::of("sph", "flow_per_s", &rows(spread, errors), None)
+}
+
+fn normal(rng: &mut ChaCha8Rng) -> f64 {
+    let (u, v): (f64, f64) = (rng.random(), rng.random());
+    (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+}
+
+const STEPS: [f64; 3] = [0.0125, 0.025, 0.05];
+
+/// These numbers of runs at each step, whose values are around 100, with an error of the paper's step.
+fn drawn(counts: &[usize], spread: f64, error: f64, rng: &mut ChaCha8Rng) -> Series {
+    let values = STEPS.iter().zip(counts).map(|(step, &count)| {
+        let value = |rng: &mut ChaCha8Rng| 100.0 + error * step / 0.02 + spread * normal(rng);
+        (0..count).map(|_| Some(value(rng))).collect()
+    });
+    Series {
+        steps: STEPS.to_vec(),
+        values: values.collect(),
+    }
+}
+
+fn offers(counts: &[usize]) -> Vec<Offer> {
+    let offer = |(&step, &runs): (&f64, &usize)| Offer {
+        step,
+        secs: 0.1 / step,
+        runs,
+    };
+    STEPS.iter().zip(counts).map(offer).collect()
+}
+
+#[test]
+fn the_shares_of_sizes_follow_the_errors_of_similar_results() {
+    let small = prior(0.01, &[0.05, -0.1, 0.0, 0.1, -0.05, 0.1]).shares;
+    let large = prior(0.01, &[3.0, -4.0, 2.5, 3.5, -3.0, 4.0]).shares;
+    for shares in [small, large, Prior::NONE.shares] {
+        assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert!(shares.iter().all(|share| *share > 0.0), "{shares:?}");
+    }
+    let size = |shares: [f64; 5], of: std::ops::Range<usize>| shares[of].iter().sum::<f64>();
+    assert!(size(small, 0..2) > size(large, 0..2));
+    assert!(size(large, 3..5) > 0.3 && size(large, 3..5) > size(small, 3..5));
+}
+
+#[test]
+fn the_scene_itself_can_be_left_out() {
+    let all = Prior::of("sph", "flow_per_s", &[], None);
+    let without = Prior::of("sph", "flow_per_s", &[], Some("gap"));
+    assert!(0 < without.similar && without.similar < all.similar);
+    let unknown = Prior::of("sph", "agents_through_walls", &[], None);
+    assert_eq!(unknown, Prior::NONE);
+}
+
+#[test]
+fn a_known_spread_narrows_intervals_and_a_contradicted_one_does_not() {
+    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    let series = drawn(&[0, 4, 0], 1.0, 0.0, &mut rng);
+    let alone = series.means(&Prior::NONE).unwrap();
+    let errors = [0.1, -0.1, 0.0];
+    let right = series.means(&prior(0.01, &errors)).unwrap();
+    assert!(right.width(0.95) < 0.9 * alone.width(0.95));
+    let wrong = series.means(&prior(1e-4, &errors)).unwrap();
+    assert!((wrong.variance / alone.variance - 1.0).abs() < 0.35);
+    assert!(wrong.width(0.95) > 0.8 * alone.width(0.95));
+}
+
+/// An estimate with runs drawn one after the other, until its error is 1.5 %.
+fn estimated(prior: &Prior, [spread, error]: [f64; 2], rng: &mut ChaCha8Rng) -> (Means, usize) {
+    let all = drawn(&[400; 3], spread, error, rng);
+    let tolerance = Tolerance::Relative(0.015);
+    let hope = Hope {
+        prior: prior.clone(),
+        tolerance,
+    };
+    let mut counts = first_round(&[hope], &offers(&[0; 3]), 0.95).unwrap();
+    loop {
+        let values = all.values.iter().zip(&counts);
+        let series = Series {
+            steps: STEPS.to_vec(),
+            values: values.map(|(v, &count)| v[..count].to_vec()).collect(),
+        };
+        let means = series.means(prior).unwrap();
+        let goal = Goal {
+            means: means.clone(),
+            tolerance,
+        };
+        let Some(more) = further(&[goal], &offers(&counts), 0.95) else {
+            return (means, counts.iter().sum());
+        };
+        counts
+            .iter_mut()
+            .zip(more)
+            .for_each(|(all, more)| *all += more);
+    }
+}
+
+/// Rows with a spread of 2 % and small errors are known; the truth has these values.
+fn covered([spread, error]: [f64; 2], prior: &Prior) -> [f64; 2] {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let draws = 300;
+    let (mut held, mut runs) = (0, 0);
+    for _ in 0..draws {
+        let (means, count) = estimated(prior, [spread, error], &mut rng);
+        let reached = means.reached(0.95).0;
+        held += usize::from((reached.value - 100.0).abs() <= reached.error);
+        runs += count;
+    }
+    [held, runs].map(|sum| sum as f64 / f64::from(draws))
+}
+
+#[test]
+fn intervals_hold_with_right_and_with_wrong_knowledge() {
+    let known = prior(0.02, &[0.1, -0.2, 0.0, 0.1, -0.1, 0.2]);
+    // As known; a spread twice and half as large; an error of one and a half spreads.
+    for truth in [[2.0, 0.2], [4.0, 0.2], [1.0, 0.1], [2.0, 3.0]] {
+        let [held, runs] = covered(truth, &known);
+        // Three standard deviations of the count below 0.93.
+        assert!(held > 0.885, "{truth:?}: {held}, {runs} runs");
+    }
+}
+
+#[test]
+fn knowledge_saves_runs() {
+    let known = prior(0.02, &[0.1, -0.2, 0.0, 0.1, -0.1, 0.2]);
+    let [_, with] = covered([2.0, 0.0], &known);
+    let [_, without] = covered([2.0, 0.0], &Prior::of("sph", "flow_per_s", &[], None));
+    assert!(with < without, "{with} {without}");
+}
+
+#[test]
+fn the_first_round_is_at_one_step_if_spreads_are_known() {
+    let hope = |prior, tolerance| Hope { prior, tolerance };
+    let known = || prior(0.02, &[0.1, -0.1]);
+    let one = hope(known(), Tolerance::Relative(0.02));
+    let round = first_round(&[one.clone()], &offers(&[0; 3]), 0.95).unwrap();
+    assert_eq!(round.iter().filter(|runs| **runs > 0).count(), 1);
+    for other in [
+        hope(known(), Tolerance::Absolute(0.02)),
+        hope(Prior::NONE, Tolerance::Relative(0.02)),
+    ] {
+        assert_eq!(
+            first_round(&[one.clone(), other], &offers(&[0; 3]), 0.95),
+            None
+        );
+    }
+}
