@@ -87,15 +87,12 @@ fn a_known_spread_narrows_intervals_and_a_contradicted_one_does_not() {
     assert!(wrong.width(0.95) > 0.8 * alone.width(0.95));
 }
 
-/// An estimate with runs drawn one after the other, until its error is 1.5 %.
-fn estimated(prior: &Prior, [spread, error]: [f64; 2], rng: &mut ChaCha8Rng) -> (Means, usize) {
-    let all = drawn(&[400; 3], spread, error, rng);
-    let tolerance = Tolerance::Relative(0.015);
-    let hope = Hope {
-        prior: prior.clone(),
-        tolerance,
-    };
-    let mut counts = first_round(&[hope], &offers(&[0; 3]), 0.95).unwrap();
+/// The error asked for.
+const WANTED: Tolerance = Tolerance::Relative(0.015);
+
+/// An estimate that begins with some runs of `all`, until its error is as small as asked for.
+fn estimated(prior: &Prior, all: &Series, first: &[usize]) -> (Means, usize) {
+    let mut counts = first.to_vec();
     loop {
         let values = all.values.iter().zip(&counts);
         let series = Series {
@@ -105,7 +102,7 @@ fn estimated(prior: &Prior, [spread, error]: [f64; 2], rng: &mut ChaCha8Rng) -> 
         let means = series.means(prior).unwrap();
         let goal = Goal {
             means: means.clone(),
-            tolerance,
+            tolerance: WANTED,
         };
         let Some(more) = further(&[goal], &offers(&counts), 0.95) else {
             return (means, counts.iter().sum());
@@ -120,10 +117,16 @@ fn estimated(prior: &Prior, [spread, error]: [f64; 2], rng: &mut ChaCha8Rng) -> 
 /// Rows with a spread of 2 % and small errors are known; the truth has these values.
 fn covered([spread, error]: [f64; 2], prior: &Prior) -> [f64; 2] {
     let mut rng = ChaCha8Rng::seed_from_u64(11);
-    let draws = 300;
+    let hope = Hope {
+        prior: prior.clone(),
+        tolerance: WANTED,
+    };
+    let first = first_round(&[hope], &offers(&[0; 3]), 0.95).unwrap();
+    let draws = 200;
     let (mut held, mut runs) = (0, 0);
     for _ in 0..draws {
-        let (means, count) = estimated(prior, [spread, error], &mut rng);
+        let all = drawn(&[400; 3], spread, error, &mut rng);
+        let (means, count) = estimated(prior, &all, &first);
         let reached = means.reached(0.95).0;
         held += usize::from((reached.value - 100.0).abs() <= reached.error);
         runs += count;
@@ -138,7 +141,7 @@ fn intervals_hold_with_right_and_with_wrong_knowledge() {
     for truth in [[2.0, 0.2], [4.0, 0.2], [1.0, 0.1], [2.0, 3.0]] {
         let [held, runs] = covered(truth, &known);
         // Three standard deviations of the count below 0.93.
-        assert!(held > 0.885, "{truth:?}: {held}, {runs} runs");
+        assert!(held > 0.875, "{truth:?}: {held}, {runs} runs");
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use sandbox::lab::estimate::{Level, Limit};
+use sandbox::lab::estimate::{Prior, Series};
 use serde_json::Value;
 
 use crate::common::program::{json, refused, run, run_in, stderr};
@@ -84,8 +84,10 @@ fn an_answer_is_that_of_its_runs() {
     let row = &answer["results"][0];
     assert_eq!(row["is_reached"], true);
     // A run by itself has the value that the answer lists for its seed and step.
-    let mut squares = 0.0;
-    let (mut found, mut degrees) = (Vec::new(), 0);
+    let mut found = Series {
+        steps: Vec::new(),
+        values: Vec::new(),
+    };
     for at in row["steps"].as_array().unwrap() {
         let step = at["step"].as_f64().unwrap();
         let values: Vec<f64> = at["values"]
@@ -94,14 +96,10 @@ fn an_answer_is_that_of_its_runs() {
             .iter()
             .map(|v| v.as_f64().unwrap())
             .collect();
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        squares += values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
-        degrees += values.len() - 1;
-        found.push(Level {
-            step,
-            runs: values.len(),
-            mean,
-        });
+        found.steps.push(step);
+        found
+            .values
+            .push(values.iter().copied().map(Some).collect());
         let every = (0.1 / step).round().to_string();
         let settings = [
             format!("time_step_secs={step}"),
@@ -125,9 +123,12 @@ fn an_answer_is_that_of_its_runs() {
             stderr(&alone)
         );
     }
-    let limit = Limit::of(&found, squares / degrees as f64);
-    let value = row["value"].as_f64().unwrap();
-    assert!((value - limit.value).abs() < 1e-9 * value);
+    let known = Prior::of("sph", "time_secs", &[], None);
+    let reached = found.means(&known).unwrap().reached(0.95).0;
+    for (name, expected) in [("value", reached.value), ("error", reached.error)] {
+        let said = row[name].as_f64().unwrap();
+        assert!((said - expected).abs() < 1e-9 * expected, "{name}: {said}");
+    }
 }
 
 #[test]

@@ -12,8 +12,8 @@ use super::terminal::{talk, tell};
 use super::watch::Watch;
 use crate::lab::curves::csv as curves_csv;
 use crate::lab::estimate::{
-    Answer, Answers, Forecast, PILOT, Question, Request, Validated, bound_sheet, curve_sheet,
-    run as make, sheet,
+    Answer, Answers, Forecast, Question, Request, Validated, bound_sheet, curve_sheet, run as make,
+    sheet,
 };
 use crate::lab::machine::main_memory;
 use crate::output::plot::Print;
@@ -155,8 +155,7 @@ fn plan(
     let folder = options.out.display();
     let unknown = || {
         format!(
-            "unknown: {folder} has no runs of this profile that say anything; the first {PILOT} runs at each of two \
-             time steps will\n"
+            "unknown: {folder} has no runs of this profile that say anything; the first runs will\n"
         )
     };
     let bounds = || {

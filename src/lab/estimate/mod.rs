@@ -35,7 +35,7 @@ pub use forecast::Forecast;
 pub use knowledge::{Knowledge, knowledge};
 pub use limit::{Level, Limit};
 pub use pictures::{bound_sheet, curve_sheet, sheet};
-pub use plan::{Goal, Hope, Offer, PILOT, first_round, further, pilot, predicted};
+pub use plan::{Goal, Hope, Offer, first_round, further, pilot, predicted};
 pub use prior::{Known, Prior};
 pub use question::{Question, QuestionError, Rung};
 pub use rows::{Answers, Questions};

@@ -11,7 +11,7 @@ use super::series::Means;
 use super::wanted::Tolerance;
 
 /// The runs of the first round at each of its two steps, if nothing is known before.
-pub const PILOT: usize = 5;
+const PILOT: usize = 5;
 /// A plan with at most this number of runs is carried out at once.
 const FEW: usize = 6;
 /// The most runs that are tried to find the first step.
