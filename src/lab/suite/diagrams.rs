@@ -2,7 +2,7 @@
 
 use super::check::Runs;
 use super::keys::{Case, Check, Diagram, Expected};
-use crate::lab::curves::Curve;
+use crate::lab::curves::{self, Curve};
 use crate::lab::gallery::{BAND, band, curve, distinct, with_legend};
 use crate::output::colors::Rgb;
 use crate::output::plot::{Axis, BLACK, GRAY, Mark, Panel, Point, Sheet, Style, line_color};
@@ -43,9 +43,10 @@ pub fn sheets(cases: &[Case], runs: &[Runs]) -> Vec<(&'static str, Sheet)> {
         .iter()
         .filter_map(|line| passages(line, runs))
         .collect();
+    let past_the_line = format!("People past the line; {}", curves::BAND);
     let all = [
         ("fundamental", "Speed by density", fundamental),
-        ("passages", "People past the line", passages),
+        ("passages", &past_the_line, passages),
     ];
     let drawn = all.into_iter().filter(|(_, _, panels)| !panels.is_empty());
     let sheet = |(stem, title, panels): (_, &str, Vec<Panel>)| {
