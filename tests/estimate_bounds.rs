@@ -302,6 +302,11 @@ fn costs_are_those_of_the_presets_for_the_same_error() {
     let number = |value: &Value| value.as_f64().unwrap();
     for (of, cost) in presets.iter().zip(answer["costs"].as_array().unwrap()) {
         assert!(number(&of["secs"]) > 0.0);
+        // Chance in 2 y(h/2) − y(h), from n runs each, is √(4 + 1) / √n of that of a run; half the step costs twice.
+        let pairs = (number(&cost["two_steps_secs"]) / number(&of["secs"]) / 3.0).round();
+        let left = |pairs: f64| (5.0 / pairs).sqrt() * number(&of["chance"]);
+        assert!(left(pairs) <= number(&row["error"]) * (1.0 + 1e-9));
+        assert!(pairs == 2.0 || left(pairs - 1.0) > number(&row["error"]) * (1.0 - 1e-9));
         let Some(runs) = of["runs"].as_f64() else {
             assert!(cost["all_secs"].is_null());
             continue;

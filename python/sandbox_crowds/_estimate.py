@@ -126,13 +126,14 @@ class Estimate:
     @property
     def costs(self) -> pandas.DataFrame:
         """One row per preset, with `costs=True`: its time `step`, the time of a run, `secs`, and `all_secs`, the time of as
-        many runs as give the errors of all results (NaN if no number does). The estimate itself took
-        `answer["secs"]`; all are seconds on one core."""
+        many runs as give the errors of all results (NaN if no number does) if the error of its step is known;
+        `two_steps_secs`, that of runs at its step and at half of it if this error is found from them. The estimate
+        itself took `answer["secs"]`; all are seconds on one core."""
         import pandas
 
         costs = self.answer.get("costs", [])
         names = pandas.Index([of["preset"] for of in costs], name="preset")
-        return pandas.DataFrame(costs, index=names, columns=["step", "secs", "all_secs"]).astype(float)
+        return pandas.DataFrame(costs, index=names, columns=["step", "secs", "all_secs", "two_steps_secs"]).astype(float)
 
     def plot(self) -> Picture:
         """The way to each result: means at each time step, errors by the number of runs and by computing time. Without

@@ -42,8 +42,11 @@ pub struct OfPreset {
     pub error_of_step: f64,
     /// Half the width of the interval that the chance of a single run gives.
     pub chance: f64,
-    /// The number of runs for the same error; `None` if the error of the step alone is larger.
+    /// The number of runs for the same error, if the error of the step is known; `None` if that alone is larger.
     pub runs: Option<f64>,
+    /// The number of runs at this step and at half of it for the same error, if the error of the step is found from
+    /// them: 2 y(h/2) − y(h), right for errors of first order, has the variance 5 σ² / n.
+    pub runs_at_two_steps: f64,
 }
 
 /// What the errors of all results would cost with a preset.
@@ -52,8 +55,11 @@ pub struct Cost {
     /// The preset, and the time of a run.
     #[serde(flatten)]
     pub timed: Timed,
-    /// The time of all runs, seconds on one core; `None` if no number of runs gives these errors.
+    /// The time of all runs, seconds on one core, if the error of the step is known; `None` if no number of runs gives
+    /// these errors.
     pub all_secs: Option<f64>,
+    /// The time of all runs at this step and at half of it, seconds on one core, if its error is found from them.
+    pub two_steps_secs: f64,
 }
 
 impl Timed {
@@ -109,6 +115,7 @@ impl OfPreset {
             error_of_step,
             chance,
             runs: (room > 0.0).then(|| (chance * chance / room).max(1.0)),
+            runs_at_two_steps: (5.0 * (chance / reached.error).powi(2)).max(2.0),
         }
     }
 
@@ -123,11 +130,15 @@ impl Cost {
     /// What all results of an estimate would cost, from what each of them would.
     pub(super) fn of_all<'a>(results: impl Iterator<Item = &'a OfPreset>, timed: Timed) -> Self {
         let own = results.filter(|of| of.timed.preset == timed.preset && of.chance > 0.0);
-        let runs = own.map(|of| of.runs).collect::<Option<Vec<f64>>>();
+        let own: Vec<&OfPreset> = own.collect();
+        let at_two = own.iter().map(|of| of.runs_at_two_steps);
+        let at_two = at_two.fold(2.0, f64::max).ceil();
+        let runs = own.iter().map(|of| of.runs).collect::<Option<Vec<f64>>>();
         let most = runs.map(|runs| runs.into_iter().fold(1.0, f64::max).ceil());
         Self {
             timed,
             all_secs: most.map(|runs| runs * timed.secs),
+            two_steps_secs: 3.0 * at_two * timed.secs, // half the step takes twice the time
         }
     }
 }

@@ -134,7 +134,12 @@ fn by_step(row: &Row) -> Panel {
     ];
     let x = Axis::linear("time step [s]", [-0.03 * coarsest, 1.06 * coarsest]);
     let y = Axis::linear(&row.name, spanned(ends));
-    Panel::new("", x, y, marks).with_legend(Corner::UpperLeft)
+    // Away from the means at fine steps.
+    let corner = match row.limit.error_at(coarsest) < 0.0 {
+        true => Corner::LowerLeft,
+        false => Corner::UpperLeft,
+    };
+    Panel::new("", x, y, marks).with_legend(corner)
 }
 
 fn by_round(runs: &Runs, k: usize, row: &Row) -> Panel {

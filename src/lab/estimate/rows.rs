@@ -186,6 +186,14 @@ impl Answers<'_> {
                 true => ".\n",
                 false => "; in the others the error of its step is larger than theirs.\n",
             };
+            let two_steps = self
+                .rows
+                .iter()
+                .filter_map(|(_, answer)| Some(answer.secs / answer.costs.get(k)?.two_steps_secs));
+            words += &format!(
+                "If the error of {preset}'s step must be found, too, from runs at this step and its half: {}.\n",
+                Shares(&two_steps.collect::<Vec<_>>())
+            );
         }
         format!("{}\n{words}", columns.table().text())
     }
