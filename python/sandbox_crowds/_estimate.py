@@ -49,6 +49,8 @@ def estimate(
     native = _given.native(scenario, geometry, settings)
     wanted = [f"{name}={error}" for name, error in (errors or {}).items()]
     shares = [f"{name}={share}" for name, share in (bound or {}).items()]
+    if not wanted and not shares:
+        raise _native.Error("nothing is asked for: give errors, such as {'flow_per_s': '1%'}, or bound")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "scenario.json")
         path.write_text(native.document, encoding="utf-8")

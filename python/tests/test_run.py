@@ -211,7 +211,7 @@ def test_a_bound_is_the_largest_of_the_runs_that_it_needs(tmp_path):
     assert row["confidence"] == pytest.approx(1 - 0.8**14) and row["share"] == 0.8
     assert answer.table.empty and answer.costs.empty and "time_secs" in repr(answer)
     assert answer.plot().png.startswith(b"\x89PNG")
-    with pytest.raises(sc.Error, match="--error"):
+    with pytest.raises(sc.Error, match="nothing is asked for"):
         sc.estimate("evacuation", **small)
 
 
