@@ -35,6 +35,7 @@ mod measure_regions;
 mod measure_safety;
 mod messages;
 mod outputs;
+mod page;
 mod plot;
 mod read;
 mod read_hdf5;

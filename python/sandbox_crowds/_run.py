@@ -143,13 +143,14 @@ class Run:
             return Picture(path.read_bytes())
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> None:
-        """Writes a recording for the Rerun viewer (.rrd), or trajectories (.sqlite, .db, .txt, .csv).
+        """Writes a recording for the Rerun viewer (.rrd), a page for any browser (.html), or trajectories (.sqlite, .db,
+        .txt, .csv).
 
         `options` are those of `sandbox run`: `record_every=5`, `debug_agents="17,42"`, `trajectory_fps=25`, `force=True`
         to replace a file.
         """
         text = _given.path_of(path)
-        option = "save" if text.lower().endswith(".rrd") else "trajectory"
+        option = "save" if text.lower().endswith((".rrd", ".html")) else "trajectory"
         self._program("run", options | {option: text})
 
     def inspect(self, agent: int, at: float) -> dict[str, Any]:

@@ -106,14 +106,18 @@ pub struct CheckpointOptions {
     pub checkpoint_every: f64,
 }
 
-/// Options of recordings.
+/// Options of recordings and pages.
 #[derive(Args)]
 #[command(next_help_heading = "Recording and live view")]
 #[command(group(ArgGroup::new("record").multiple(true).args(["save", "spawn", "connect"])))]
 pub struct RecordOptions {
-    /// Write a recording for the Rerun viewer
-    #[arg(long, value_name = "FILE.rrd", value_parser = recording())]
-    pub save: Option<PathBuf>,
+    /// Write a recording for the Rerun viewer (.rrd) or a page for any browser (.html); may be given once for each
+    #[arg(long, value_name = "FILE", value_parser = recording())]
+    pub save: Vec<PathBuf>,
+    /// Put the Rerun viewer and the recording into the page, too: the folder of the Python package `rerun_notebook`
+    /// 0.36.3
+    #[arg(long, value_name = "DIR", requires = "save")]
+    pub page_viewer: Option<PathBuf>,
     /// Show the run live in a Rerun viewer; starts one if none is running
     #[arg(long)]
     pub spawn: bool,

@@ -8,7 +8,7 @@ use clap_complete::Shell;
 use super::arguments::{ResumeOptions, RunOptions};
 use super::update::UpdateOptions;
 use super::{
-    accuracy, bench, calibrate, compare, draw, estimate, inspect, measure, report, reproduce,
+    accuracy, bench, calibrate, compare, draw, estimate, inspect, measure, page, report, reproduce,
     stress, suite, sweep,
 };
 
@@ -23,6 +23,7 @@ Examples:
   sandbox inspect evacuation --agent 17 --at 15 --json
   sandbox draw my_station.json --paths 'east exit' --out ways.png
   sandbox report my_station.json --out station.pdf
+  sandbox run my_station.json --save my_station.html
   sandbox sweep study.json --threads 2
   sandbox bench scaling --largest 100000
   sandbox list --settings";
@@ -77,6 +78,9 @@ pub enum Command {
     /// Write the document that is handed in with a run or a study: plan, results with definitions, pictures, limits
     #[command(after_help = report::EXAMPLES)]
     Report(report::ReportOptions),
+    /// Make a page of a recording or of trajectories: one file that plays in any browser
+    #[command(after_help = "Example: sandbox page evacuation.rrd --out evacuation.html")]
+    Page(page::PageOptions),
     /// Regenerate the paper's tables and figures (§6) and compare them with the published ones
     #[command(
         after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about()),

@@ -7,7 +7,7 @@ use super::checkpoint::Checkpoints;
 use super::failure::Failure;
 use super::inputs::{scenario, setting};
 use super::interrupt::Interrupt;
-use super::output::{Recording, check, trajectories};
+use super::output::{check, recordings, trajectories};
 use super::terminal::{talk, tell};
 use super::watch::Progress;
 use super::{memory, notes, results};
@@ -112,9 +112,7 @@ fn go_on(
     let checkpoints = Checkpoints::create(&options.checkpoint, resumable, &mut run);
     let progress = Progress::new(run.scenario.duration_secs);
     let mut observers: Vec<Box<dyn Observer<Failure> + Send>> = vec![Box::new(progress)];
-    if let Some(recording) = Recording::create(&options.record, &mut run, &interrupt)? {
-        observers.push(Box::new(recording));
-    }
+    observers.extend(recordings(&options.record, &mut run, &interrupt)?);
     for trajectory in trajectories(&options.trajectory, &mut run)? {
         observers.push(Box::new(trajectory));
     }

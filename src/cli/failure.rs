@@ -6,6 +6,7 @@ use crate::lab::error::LabError;
 use crate::lab::estimate::QuestionError;
 use crate::lab::measure::MeasureError;
 use crate::lab::sweep::{DrawingError, StudyError};
+use crate::output::page::PageError;
 use crate::output::plot::PlotError;
 use crate::output::recording::RecordingError;
 use crate::output::trajectory::TrajectoryError;
@@ -112,6 +113,15 @@ impl From<RecordingError> for Failure {
     fn from(error: RecordingError) -> Self {
         match error {
             RecordingError::SwitchedOff(_) => Self::Input(error.to_string()),
+            error => Self::Output(error.to_string()),
+        }
+    }
+}
+
+impl From<PageError> for Failure {
+    fn from(error: PageError) -> Self {
+        match error {
+            PageError::NoViewer { .. } => Self::Input(error.to_string()),
             error => Self::Output(error.to_string()),
         }
     }

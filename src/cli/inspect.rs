@@ -8,7 +8,7 @@ use serde_json::json;
 use super::arguments::{SceneOptions, use_threads};
 use super::failure::Failure;
 use super::terminal::say;
-use super::values::{id, recording, seconds};
+use super::values::{id, is_page, recording, seconds};
 use super::watch::Progress;
 use super::{memory, moment, output};
 use crate::engine::breakdown::Breakdown;
@@ -33,14 +33,14 @@ pub struct InspectOptions {
     /// The moment, seconds; at 0 no agent has moved yet
     #[arg(long, value_name = "SECS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = seconds)]
     pub at: f64,
-    /// Also write this moment as a recording for the Rerun viewer
-    #[arg(long, value_name = "FILE.rrd", value_parser = recording())]
+    /// Also write this moment as a recording for the Rerun viewer (.rrd), or as a page (.html)
+    #[arg(long, value_name = "FILE", value_parser = recording())]
     pub save: Option<PathBuf>,
 }
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     use_threads(options.scene.program.threads)?;
-    if options.save.is_some() {
+    if options.save.as_deref().is_some_and(|path| !is_page(path)) {
         check_enabled()?;
     }
     let writing = memory::of_inspecting(options.save.is_some(), options.all);

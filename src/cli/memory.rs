@@ -4,9 +4,12 @@
 use std::path::Path;
 
 use super::arguments::OutputOptions;
+use super::values::is_page;
 
 /// Recording: 84.4 MB.
 const RECORDED: u64 = 420;
+/// Page: see the limit of its blocks.
+const PAGE: u64 = 900;
 /// Recording with the forces on every agent, in addition to [`RECORDED`]: 305 MB together.
 const LAID_OPEN: u64 = 2_600;
 /// Trajectory with every quantity: 150 MB.
@@ -24,7 +27,9 @@ pub fn of_writing(options: &OutputOptions) -> u64 {
     };
     let (record, files) = (&options.record, options.trajectory.files.iter());
     let of = |asked: bool, bytes: u64| if asked { bytes } else { 0 };
-    of(record.save.is_some(), RECORDED)
+    let pages = record.save.iter().filter(|path| is_page(path)).count();
+    of(record.save.len() > pages, RECORDED)
+        + of(pages > 0, PAGE)
         + of(record.debug_agents.as_deref() == Some("all"), LAID_OPEN)
         + of(options.checkpoint.checkpoint.is_some(), CHECKPOINT)
         + files.map(|path| trajectory(path)).sum::<u64>()

@@ -18,6 +18,7 @@ mod watch;
 mod checkpoint;
 mod results;
 
+mod frames;
 mod moment;
 mod notes;
 mod output;
@@ -32,6 +33,7 @@ mod estimate;
 mod inspect;
 mod list;
 mod measure;
+mod page;
 mod report;
 mod reproduce;
 mod stress;
@@ -98,6 +100,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Resume(options) => drive::resume(&options),
         Command::Inspect(options) => inspect::run(&options),
         Command::Draw(options) => draw::run(&options),
+        Command::Page(options) => page::run(&options),
         Command::Report(options) => report::run(&options),
         Command::Reproduce(options) => reproduce::run(&options),
         Command::Bench(options) => bench::run(&options),

@@ -1,7 +1,7 @@
 //! Parsers for the values of options.
 
 use std::ops::RangeBounds;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
@@ -167,12 +167,27 @@ pub fn ids(text: &str) -> Result<Vec<u32>, Failure> {
     })
 }
 
-/// A path with the extension that the Rerun viewer expects of a recording.
+/// A path with the extension that the Rerun viewer expects of a recording, or that of a page.
 pub fn recording() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| match path.extension() {
         Some(extension) if extension.eq_ignore_ascii_case("rrd") => Ok(path),
-        _ => Err("a recording's name must end in .rrd"),
+        _ if is_page(&path) => Ok(path),
+        _ => Err("a recording's name must end in .rrd, that of a page in .html"),
     })
+}
+
+/// A path with the extension of a page.
+pub fn page() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match is_page(&path) {
+        true => Ok(path),
+        false => Err("a page's name must end in .html"),
+    })
+}
+
+/// Whether a file is a page, by its extension.
+pub fn is_page(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default();
+    extension.eq_ignore_ascii_case("html") || extension.eq_ignore_ascii_case("htm")
 }
 
 /// A path with the extension of a picture or an animation.

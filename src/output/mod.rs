@@ -1,15 +1,22 @@
-//! Output: HTML files, text tables, Rerun recordings (the only module that names `rerun`), trajectories (SQLite, text
-//! and CSV), and pictures and animations (SVG, PNG, PDF, GIF, APNG and video; the only module that names `plotters`).
+//! Output: HTML files and tables, Rerun recordings (the only module that names `rerun`), trajectories (SQLite, text
+//! and CSV), pictures and animations (SVG, PNG, PDF, GIF, APNG and video; the only module that names `plotters`), and pages
+//! that play a run in a browser.
 
 pub mod html;
 
 pub mod table;
+
+pub mod results;
 
 pub mod colors;
 
 pub mod scenery;
 
 pub mod labels;
+
+pub mod events;
+
+pub mod series;
 
 pub mod recording;
 
@@ -18,5 +25,7 @@ pub mod trajectory;
 pub mod plot;
 
 pub mod picture;
+
+pub mod page;
 
 pub mod document;

@@ -9,6 +9,8 @@ pub mod floors;
 pub mod json_schema;
 #[cfg(all(feature = "program", unix))]
 pub mod outputs;
+#[cfg(feature = "program")]
+pub mod page;
 pub mod plan_reading;
 pub mod plans;
 #[cfg(feature = "program")]

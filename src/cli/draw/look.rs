@@ -1,7 +1,7 @@
 //! The content of a picture of a crowd: colors by a quantity, a field, paths of the last seconds.
 
-use super::frames::{Run, kernel};
 use crate::cli::failure::Failure;
+use crate::cli::frames::{Run, kernel};
 use crate::engine::math::Vector;
 use crate::lab::measure::{Fields, Mean, Person, Site, cells_over};
 use crate::output::colors::ColorMap;

@@ -1,15 +1,13 @@
 //! `sandbox draw`: pictures and animations of a run, without a viewer, and the curve of the people who leave.
 //!
-//! A run is a scenario, which is simulated until then, a trajectory file or a recording: [`frames::Frames`].
+//! A run is a scenario, which is simulated until then, a trajectory file or a recording:
+//! [`Frames`](super::frames::Frames).
 
 mod arguments;
 mod egress;
-mod frames;
 mod look;
 mod paths;
-mod recorded;
 mod simulated;
-mod tracked;
 
 pub use arguments::DrawOptions;
 
@@ -19,6 +17,7 @@ use serde_json::json;
 
 use super::arguments::{SceneOptions, use_threads};
 use super::failure::Failure;
+use super::frames::{Run, recorded, tracked};
 use super::inputs::NO_WALLS;
 use super::moment;
 use super::terminal::tell;
@@ -27,7 +26,6 @@ use crate::output::picture::{Paths, Picture, Trails};
 use crate::output::plot::{Animation, PAPER_DPI, Print};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::trajectories::{ReadOptions, Unit};
-use frames::Run;
 use look::{Look, NONE};
 
 /// The width of pictures without another one, millimeters: two columns of a paper.
@@ -164,7 +162,7 @@ fn open(
                 unit: options.unit.as_deref().and_then(Unit::named),
                 fps: options.trajectory_fps,
             };
-            tracked::open(path, &read, plan, color(options, false))?
+            tracked::open(path, &read, plan, &[color(options, false)])?
         }
         _ => return simulate(options, times, outputs),
     };

@@ -1,7 +1,7 @@
 //! Frames of a simulation.
 
-use super::frames::{Frames, Run, speeds};
 use crate::cli::failure::Failure;
+use crate::cli::frames::{Frames, Run, speeds};
 use crate::cli::moment;
 use crate::cli::watch::Progress;
 use crate::engine::scene::Scene;

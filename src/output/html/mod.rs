@@ -32,7 +32,7 @@ pub struct Head<'a> {
     pub style: &'a str,
     /// A script that runs while the file is read.
     pub script: &'a str,
-    /// More sources that the content security policy allows; usually empty.
+    /// What the content security policy allows beside styles, scripts and images in the file; usually nothing.
     pub allowed: &'a str,
 }
 
@@ -48,7 +48,7 @@ impl Head<'_> {
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; \
-             style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:{}\">\n\
+             style-src 'unsafe-inline'; img-src data:; script-src 'unsafe-inline'{}\">\n\
              <meta name=\"generator\" content=\"{PROGRAM}\">\n<link rel=\"icon\" href=\"data:,\">\n\
              <title>{title}</title>\n<style>\n{STYLE}{}</style>\n{script}</head>\n<body>\n",
             self.allowed, self.style,

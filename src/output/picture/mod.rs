@@ -277,9 +277,27 @@ impl<'a> Picture<'a> {
         if let (None, Some(simulation), Some(mass)) = (paths, self.simulation, self.wall_mass()) {
             marks.extend(forces::marks(simulation, mass));
         }
-        marks.extend(scene::zones(scene, frame, paths.is_none(), &mut labels));
+        marks.extend(self.lines(frame, paths.is_none(), (above, places), labels));
+        marks.extend(foot::marks(self, frame, paths.is_some()));
+        let [x, y] = frame.axes();
+        Panel {
+            bar,
+            ..Panel::new(&title, x, y, marks)
+        }
+    }
+
+    /// Zones, sources, places, goals and regions with all names; `above` are the marks between sources and places.
+    fn lines(
+        &self,
+        frame: &Frame,
+        is_plain: bool,
+        (above, places): (Vec<Mark>, Vec<Mark>),
+        mut labels: Labels,
+    ) -> Vec<Mark> {
+        let scene = self.scene;
+        let mut marks = scene::zones(scene, frame, is_plain, &mut labels);
         marks.extend(scene::sources(scene, &mut labels));
-        marks.append(&mut above);
+        marks.extend(above);
         marks.extend(places);
         marks.extend(scene::goals(self, frame, &mut labels));
         // Texts lie in their rooms; names of measurements find other places.
@@ -287,16 +305,25 @@ impl<'a> Picture<'a> {
         for label in scenery::own_texts(scene, observed, self.labels) {
             labels.add_within(label, NAME);
         }
-        if paths.is_none() {
+        if is_plain {
             marks.extend(regions::marks(scene, self.observed, &mut labels));
         }
         marks.extend(written(labels));
-        marks.extend(foot::marks(self, frame, paths.is_some()));
-        let [x, y] = frame.axes();
-        Panel {
-            bar,
-            ..Panel::new(&title, x, y, marks)
-        }
+        marks
+    }
+
+    /// What does not move, for a viewer with its own scale: the part of the plane that it shows, what lies below agents,
+    /// and what lies above them.
+    pub fn plan(&self) -> ([Vector; 2], Vec<Mark>, Vec<Mark>) {
+        let shown = self.shown();
+        let frame = Frame::around(shown, ALONE, MARGIN);
+        let mut labels = Labels::new(frame.screen(), self.avoided(&frame));
+        let places = scene::places(self, &frame, &mut labels);
+        let below = scene::ground(self.scene).into_iter();
+        let below = below.chain(scene::tints(self.scene)).collect();
+        let mut above = scene::walls(self.scene);
+        above.extend(self.lines(&frame, true, (Vec::new(), places), labels));
+        (shown, below, above)
     }
 
     /// The points of agents, walls, places and zones.

@@ -10,13 +10,14 @@ use super::debug::focus::Focus;
 use super::debug::layers::Layer;
 use super::error::{Cause, GONE, RecordingError};
 use super::frame::crowd::{self, Crowd, Maps};
-use super::frame::events::{self, Line};
+use super::frame::events;
 use super::frame::{Snapshot, set_time, stats, wall_forces};
 use super::layout::{Content, Opening, blueprint};
 use super::options::RecordingOptions;
 use super::scene::bars;
 use super::stream::Output;
 use super::text::{self, Document};
+use crate::output::events::Line;
 
 /// Maximum number of queued snapshots; the simulation waits when the queue is full.
 const QUEUE: usize = 4;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rerun::external::arrow::array::{ArrayRef, Float64Array, StringArray, UInt64Array};
 use rerun::{AnyValues, RecordingStream, TextDocument};
+use serde_json::Value;
 
 use super::debug::DebugAgents;
 use super::debug::arrows;
@@ -174,12 +175,26 @@ fn log_run(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
     log_properties(stream, "run", properties)
 }
 
-/// Logs the results of a run, as text and as JSON.
+/// Logs the results of a run, as text and as JSON, and the measurements as properties, which tables of recordings show.
 pub fn log_results(stream: &RecordingStream, text: &str, json: &str) -> Result<(), Cause> {
     let text = TextDocument::from_markdown(format!("```text\n{text}```\n"));
     stream.log_static(RESULTS, &text)?;
-    let json = TextDocument::new(json).with_media_type("application/json");
-    Ok(stream.log_static(REPORT, &json)?)
+    let document = TextDocument::new(json).with_media_type("application/json");
+    stream.log_static(REPORT, &document)?;
+    let report: Value = serde_json::from_str(json)?;
+    let metrics = report["metrics"].as_object().into_iter().flatten();
+    let numbers = metrics.filter_map(|(name, value)| Some((name, value.as_f64()?)));
+    let numbers: Vec<_> = numbers.collect();
+    if numbers.is_empty() {
+        return Ok(());
+    }
+    let properties = numbers
+        .into_iter()
+        .fold(AnyValues::default(), |properties, (name, value)| {
+            let value = Arc::new(Float64Array::from(vec![value]));
+            properties.with_component_from_data(name.as_str(), value)
+        });
+    Ok(stream.send_property("results", &properties)?)
 }
 
 /// Adds the moment that a recording opens at to the properties of its run.

@@ -28,7 +28,7 @@ type Row = (i64, i64, Vec<f64>);
 ///
 /// # Errors
 /// The file cannot be read.
-pub fn columns(path: &Path, wanted: &str, tracks: &Tracks) -> Result<Vec<Column>, ReadError> {
+pub fn columns(path: &Path, wanted: &[&str], tracks: &Tracks) -> Result<Vec<Column>, ReadError> {
     let is_csv = path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("csv"));
@@ -40,7 +40,7 @@ pub fn columns(path: &Path, wanted: &str, tracks: &Tracks) -> Result<Vec<Column>
     let names: Vec<String> = names
         .filter(|name| !OTHERS.contains(&name.as_str()))
         .collect();
-    let read = |name: &&String| *name == wanted || *name == "radius";
+    let read = |name: &&String| wanted.contains(&name.as_str()) || *name == "radius";
     let needed: Vec<&str> = names.iter().filter(read).map(String::as_str).collect();
     let values = match needed.is_empty() {
         true => Vec::new(),

@@ -11,8 +11,9 @@ use crate::engine::breakdown::Breakdown;
 use crate::engine::geometry::HiddenRegion;
 use crate::engine::math::Vector;
 use crate::engine::profile::Term;
-use crate::engine::scene::Region;
+use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
+use crate::output::colors::Rgb;
 
 /// Number of segments of an arc in the outline of a hidden region.
 const ARC_STEPS: usize = 24;
@@ -69,6 +70,27 @@ impl DebugAgents {
         let chosen = chosen.into_iter();
         chosen.filter_map(|i| Open::of(simulation, i)).collect()
     }
+}
+
+/// The names and colors of the accelerations that act in a scene, their sum first.
+pub fn force_terms(scene: &Scene) -> Vec<(String, Rgb)> {
+    let terms = arrows::acting(scene).into_iter();
+    let terms = terms.map(|term| (arrows::in_words(term), arrows::color(term).1));
+    let total = ("total".to_owned(), arrows::TOTAL);
+    std::iter::once(total).chain(terms).collect()
+}
+
+/// The accelerations of the debug agents in the current frame, by id: their sum, then those of [`force_terms`], m/s².
+pub fn forces_on(simulation: &Simulation, debug: &DebugAgents) -> Vec<(u32, Vec<Vector>)> {
+    let terms = arrows::acting(simulation.scene());
+    let open = debug.open(simulation, &[]).into_iter();
+    let forces = open.map(|agent| {
+        let total = Vector::from(agent.breakdown.acceleration);
+        let own = terms.iter().map(|&term| agent.force(term));
+        let all = std::iter::once(total).chain(own);
+        (agent.breakdown.id, all.collect())
+    });
+    forces.collect()
 }
 
 /// An agent with its breakdown.

@@ -12,8 +12,8 @@ use super::draw::{Point, xy};
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
 use crate::output::colors::Rgb;
+use crate::output::events::Line;
 use crate::output::scenery::stage_color;
-use events::Line;
 use wall_forces::Part;
 
 /// The timelines.

@@ -1,4 +1,7 @@
-//! The source of pictures of a crowd: a simulation, a trajectory file, or a recording.
+//! The source of pictures and pages of a crowd: a simulation, a trajectory file, or a recording.
+
+pub mod recorded;
+pub mod tracked;
 
 use crate::cli::failure::Failure;
 use crate::engine::boundary::WallMethod;
@@ -25,6 +28,11 @@ pub trait Frames: Send {
     /// The simulation, if there is one. Its agents are those of [`crowd`](Self::crowd), in the same order.
     fn simulation(&self) -> Option<&Simulation> {
         None
+    }
+
+    /// The times of all frames, seconds, ascending, if they are known.
+    fn times(&self) -> &[f64] {
+        &[]
     }
 
     /// Goes to the frame nearest to a time, seconds, not before the current frame.
@@ -61,6 +69,10 @@ pub struct Run {
     pub body_mass: Option<f64>,
     /// The times of the first and the last frame, seconds, if they are known.
     pub times: Option<[f64; 2]>,
+    /// The scenario and the report in JSON, if a file has them.
+    pub scenario: Option<Scenario>,
+    /// See [`scenario`](Self::scenario).
+    pub report: Option<String>,
 }
 
 impl Run {
@@ -77,6 +89,8 @@ impl Run {
             labels: scenario.labels.clone(),
             body_mass: None,
             times: None,
+            scenario: None,
+            report: None,
             frames,
         }
     }
@@ -98,6 +112,8 @@ impl Run {
             labels: Vec::new(),
             body_mass: None,
             times: None,
+            scenario: None,
+            report: None,
             frames,
         }
     }
@@ -155,10 +171,16 @@ impl<F: Film> Frames for Over<F> {
 
     fn go_to(&mut self, time: f64) -> Result<(), Failure> {
         let away = |k: &usize| (self.times[*k] - time).abs();
-        let nearest = (0..self.times.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        let after = self.times.partition_point(|&own| own < time);
+        let near = after.saturating_sub(1)..(after + 1).min(self.times.len());
+        let nearest = near.min_by(|a, b| away(a).total_cmp(&away(b)));
         self.current = nearest.unwrap_or(0);
         self.crowd = self.film.crowd(self.current);
         Ok(())
+    }
+
+    fn times(&self) -> &[f64] {
+        &self.times
     }
 
     fn crowd(&self) -> &Crowd {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::frames::{Film, Over, Run};
+use super::{Film, Over, Run};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::talk;
 use crate::engine::agents::REFERENCE_RADIUS;
@@ -28,6 +28,7 @@ pub fn open(path: &Path) -> Result<Run, Failure> {
     });
     let times: Vec<f64> = recorded.times().collect();
     let ends = times.first().copied().zip(times.last().copied());
+    let report = recorded.report().map(str::to_owned);
     let title = recorded.title().unwrap_or_default().to_owned();
     let run = match &scenario {
         Some(scenario) => {
@@ -45,6 +46,8 @@ pub fn open(path: &Path) -> Result<Run, Failure> {
     Ok(Run {
         title,
         times: ends.map(Into::into),
+        report,
+        scenario,
         ..run
     })
 }

@@ -1,16 +1,21 @@
-//! The output files of a run: checks, trajectories and the recording.
+//! The output files of a run: checks, trajectories, the recording and the page.
+
+mod page;
 
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::arguments::{OutputOptions, RecordOptions, TrajectoryOptions};
 use super::failure::Failure;
 use super::interrupt::Interrupt;
 use super::results;
 use super::terminal::talk;
-use super::values::{ids, region};
+use super::values::{ids, is_page, region};
+use page::PageOfRun;
+
 use crate::engine::clock::Clock;
 use crate::engine::simulation::Simulation;
+use crate::output::page::EmbeddedViewer;
 use crate::output::recording::{
     DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer, record_moment,
 };
@@ -48,13 +53,80 @@ pub fn check(
             record.record_from
         )));
     }
-    if let Some(path) = &record.save {
+    for path in &record.save {
         outputs.writes("--save", path, Manner::InPlace);
     }
+    if let (Some(folder), [recording, page]) = (&record.page_viewer, kinds(record)?) {
+        if recording.is_none() || page.is_none() {
+            let problem =
+                "--page-viewer needs a recording and a page: --save FILE.rrd --save FILE.html";
+            return Err(Failure::Input(problem.to_owned()));
+        }
+        EmbeddedViewer::in_package(folder)?;
+    }
+    kinds(record)?;
     if let Some(path) = &options.checkpoint.checkpoint {
         outputs.writes("--checkpoint", path, Manner::Whole);
     }
     Ok(outputs.check()?)
+}
+
+/// The recording and the page of `--save`.
+fn kinds(record: &RecordOptions) -> Result<[Option<&Path>; 2], Failure> {
+    let of = |wanted: bool| {
+        let mut files = record.save.iter().filter(|path| is_page(path) == wanted);
+        match (files.next(), files.next()) {
+            (Some(one), Some(other)) => Err(Failure::Input(format!(
+                "--save {} and {}: a run has one recording (.rrd) and one page (.html)",
+                one.display(),
+                other.display()
+            ))),
+            (one, _) => Ok(one.map(PathBuf::as_path)),
+        }
+    };
+    Ok([of(false)?, of(true)?])
+}
+
+/// The recording and the page of a run, if they are requested.
+pub fn recordings(
+    record: &RecordOptions,
+    run: &mut Run,
+    interrupt: &Interrupt,
+) -> Result<Vec<Box<dyn Observer<Failure> + Send>>, Failure> {
+    let debug = debug_agents(record, &run.scenario)?;
+    let mut all: Vec<Box<dyn Observer<Failure> + Send>> = Vec::new();
+    if let Some(to) = destination(record, interrupt)? {
+        all.push(Box::new(Recording::create(
+            to,
+            (record, debug.clone()),
+            run,
+        )?));
+    }
+    if let [_, Some(path)] = kinds(record)? {
+        all.push(Box::new(PageOfRun::create(path, (record, debug), run)?));
+    }
+    Ok(all)
+}
+
+/// Which frames are recorded.
+struct Due {
+    every: u64,
+    from: u64,
+}
+
+impl Due {
+    fn new(record: &RecordOptions, simulation: &Simulation) -> Self {
+        Self {
+            every: record.record_every,
+            from: simulation.frame().clock.frame_at(record.record_from),
+        }
+    }
+
+    /// Whether the current frame is.
+    fn now(&self, simulation: &Simulation) -> bool {
+        let frame = simulation.frame().clock.frame();
+        frame >= self.from && frame.is_multiple_of(self.every)
+    }
 }
 
 /// Opens the trajectory files.
@@ -81,8 +153,7 @@ impl Observer<Failure> for Trajectory {
 /// The recording of a run.
 pub struct Recording {
     recorder: Recorder,
-    every: u64,
-    from: u64,
+    due: Due,
     /// Number of frames recorded so far.
     recorded: u64,
     /// The clock at the last frame, and whether it was said why the run ended there.
@@ -91,34 +162,27 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Opens the recording, if one is requested.
-    pub fn create(
-        record: &RecordOptions,
+    fn create(
+        to: Destination,
+        (record, debug): (&RecordOptions, DebugAgents),
         run: &mut Run,
-        interrupt: &Interrupt,
-    ) -> Result<Option<Self>, Failure> {
-        let debug = debug_agents(record, &run.scenario)?;
-        let Some(to) = destination(record, interrupt)? else {
-            return Ok(None);
-        };
+    ) -> Result<Self, Failure> {
         run.simulation.request_density_until(u64::MAX);
         let view = recording_options(&run.scenario, debug, record.record_from);
-        Ok(Some(Self {
+        Ok(Self {
             recorder: Recorder::create(to, &run.simulation, &view)?,
-            every: record.record_every,
-            from: run.simulation.frame().clock.frame_at(record.record_from),
+            due: Due::new(record, &run.simulation),
             recorded: 0,
             last: *run.simulation.frame().clock,
             ended: false,
-        }))
+        })
     }
 }
 
 impl Observer<Failure> for Recording {
     fn observe(&mut self, run: &Run, ms: f64, then: ControlFlow<End>) -> Result<(), Failure> {
         self.last = *run.simulation.frame().clock;
-        let frame = self.last.frame();
-        if frame >= self.from && frame.is_multiple_of(self.every) {
+        if self.due.now(&run.simulation) {
             self.recorder.log(&run.simulation, ms)?;
             self.recorded += 1;
         }
@@ -168,7 +232,8 @@ fn destination(
         ),
         None => record.spawn.then_some(Viewer::Spawned),
     };
-    let file = record.save.clone();
+    let [file, _] = kinds(record)?;
+    let file = file.map(Path::to_owned);
     let asked = file.is_some() || viewer.is_some();
     Ok(asked.then_some(Destination {
         file,
@@ -184,6 +249,9 @@ pub fn save_moment(
     simulation: &Simulation,
     ids: Vec<u32>,
 ) -> Result<(), Failure> {
+    if is_page(path) {
+        return page::save_moment(path, scenario, simulation, ids);
+    }
     let now = simulation.frame().clock.time();
     let run = Identity::of_run(scenario);
     let id = Identity::of("inspect", format_args!("{run} {now} {ids:?}"));

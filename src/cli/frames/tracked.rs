@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::frames::{Film, Over, Run};
+use super::{Film, Over, Run};
 use crate::cli::failure::Failure;
 use crate::cli::inputs;
 use crate::engine::agents::REFERENCE_RADIUS;
@@ -21,13 +21,13 @@ struct Tracked {
     columns: Vec<Column>,
 }
 
-/// The run that a trajectory file holds, with the walls of a floor plan or else those of the file. `wanted` is the
-/// column that is needed.
+/// The run that a trajectory file holds, with the walls of a floor plan or else those of the file. `wanted` are the
+/// columns that are needed.
 pub fn open(
     path: &Path,
     options: &ReadOptions,
     geometry: Option<&Path>,
-    wanted: &str,
+    wanted: &[&str],
 ) -> Result<Run, Failure> {
     let tracks = inputs::tracks(path, options)?;
     let site = inputs::site(path, geometry, &tracks)?;

@@ -1,0 +1,146 @@
+//! The page of a run.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use super::{Due, kinds, recording_options};
+use crate::cli::arguments::RecordOptions;
+use crate::cli::failure::Failure;
+use crate::cli::results as report;
+use crate::engine::breakdown::Breakdown;
+use crate::engine::simulation::Simulation;
+use crate::output::events::Events;
+use crate::output::html::escape;
+use crate::output::page::{EmbeddedViewer, Moment, Page, PageOptions};
+use crate::output::picture::{Crowd, Picture};
+use crate::output::recording::DebugAgents;
+use crate::output::results::{reproducible, results, section};
+use crate::runs::drive::{End, Observer, Run};
+use crate::scenario::Scenario;
+
+/// The page of a run while it is being written.
+pub struct PageOfRun {
+    page: Page,
+    due: Due,
+    debug: DebugAgents,
+    events: Events,
+    /// The Rerun viewer, and the recording that it shows, which is complete before the page is.
+    viewer: Option<(EmbeddedViewer, PathBuf)>,
+    /// The results; `None` until the run has ended.
+    results: Option<String>,
+}
+
+impl PageOfRun {
+    /// Opens the page at a path.
+    pub fn create(
+        path: &Path,
+        (record, debug): (&RecordOptions, DebugAgents),
+        run: &mut Run,
+    ) -> Result<Self, Failure> {
+        run.simulation.request_density_until(u64::MAX);
+        let viewer = record
+            .page_viewer
+            .as_deref()
+            .map(EmbeddedViewer::in_package);
+        let viewer = viewer.transpose()?;
+        let [recording, _] = kinds(record)?;
+        let viewer = viewer.zip(recording.map(Path::to_owned));
+        let options = PageOptions {
+            has_viewer: viewer.is_some(),
+            ..options(&run.scenario, &debug, record.record_from)
+        };
+        Ok(Self {
+            page: create(path, (&run.scenario, &run.simulation), &options)?,
+            due: Due::new(record, &run.simulation),
+            debug,
+            events: Events::new(run.scenario.entering),
+            viewer,
+            results: None,
+        })
+    }
+}
+
+impl Observer<Failure> for PageOfRun {
+    fn observe(&mut self, run: &Run, _: f64, then: ControlFlow<End>) -> Result<(), Failure> {
+        if self.due.now(&run.simulation) {
+            let events = self.events.new_lines(&run.simulation);
+            let crowd = Crowd::of(&run.simulation);
+            let events = (self.events.evacuated, events);
+            let moment = Moment::of(&run.simulation, &crowd, events, &self.debug);
+            self.page.add(&moment)?;
+        }
+        if then.is_break() {
+            let report = reproducible(report::json(run));
+            self.results = Some(results(&report, Some(&run.scenario)));
+        }
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(), Failure> {
+        if let Some((viewer, recording)) = &self.viewer {
+            self.page.embed(viewer, recording)?;
+        }
+        let failed = || section("Outcome", "<p>The run ended with an error.</p>\n");
+        Ok(self.page.finish(&self.results.unwrap_or_else(failed))?)
+    }
+}
+
+/// A page with the plan of a scenario.
+fn create(
+    path: &Path,
+    (scenario, simulation): (&Scenario, &Simulation),
+    options: &PageOptions,
+) -> Result<Page, Failure> {
+    let (title, view) = (String::new(), scenario.view.region);
+    let observed: Vec<_> = scenario
+        .measurements
+        .iter()
+        .flat_map(|one| one.observed())
+        .collect();
+    let nobody = Crowd::default();
+    let picture = Picture {
+        observed: &observed,
+        labels: &scenario.labels,
+        ..Picture::of(simulation, &nobody, title, view)
+    };
+    Ok(Page::create(path, &picture, options)?)
+}
+
+/// The options of a page that begins at the time `from`.
+fn options(scenario: &Scenario, debug: &DebugAgents, from: f64) -> PageOptions {
+    let recording = recording_options(scenario, debug.clone(), from);
+    PageOptions {
+        title: recording.title,
+        description: recording.description,
+        density_range: recording.density_range,
+        speed_range: recording.speed_range,
+        opens_at: recording.opens_at,
+        ..PageOptions::of(&scenario.scene, *debug != DebugAgents::None)
+    }
+}
+
+/// Writes a page of one evaluated frame, with the forces on some agents, the first of which is followed.
+pub fn save_moment(
+    path: &Path,
+    scenario: &Scenario,
+    simulation: &Simulation,
+    ids: Vec<u32>,
+) -> Result<(), Failure> {
+    let agents = simulation.frame().agents;
+    let of = |&id: &u32| Breakdown::of(simulation, agents.index_of(id)?);
+    let numbers = ids.iter().filter_map(of);
+    let numbers = numbers.map(|agent| format!("<pre>{}</pre>\n", escape(&agent.to_string())));
+    let numbers: String = numbers.collect();
+    let follows = ids.first().copied();
+    let debug = DebugAgents::Ids(ids);
+    let now = simulation.frame().clock.time();
+    let options = PageOptions {
+        follows,
+        ..options(scenario, &debug, now)
+    };
+    let mut page = create(path, (scenario, simulation), &options)?;
+    let crowd = Crowd::of(simulation);
+    page.add(&Moment::of(simulation, &crowd, (0, Vec::new()), &debug))?;
+    let title = format!("Forces at {now:.2} s");
+    Ok(page.finish(&section(&title, &numbers))?)
+}

@@ -1,0 +1,178 @@
+//! `sandbox page`: a page of a recording or of trajectories.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use serde_json::{Value, json};
+
+use super::arguments::{ProgramOptions, use_threads};
+use super::failure::Failure;
+use super::frames::{Run, recorded, tracked};
+use super::inputs::NO_WALLS;
+use super::terminal::tell;
+use super::values::{frame_rate, page};
+use super::watch::bar;
+use crate::output::page::{EmbeddedViewer, Moment, Page, PageOptions as Content};
+use crate::output::picture::{Crowd, Picture};
+use crate::output::results::{pairs, reproducible, results, section};
+use crate::runs::outputs::{Manner, Outputs};
+use crate::scenario::trajectories::{ReadOptions, Unit};
+
+/// Where densities come from, in words.
+const DENSITIES: &str =
+    "the column `density` of the file, or else the SPH kernel with a support radius of 1 m";
+
+#[derive(Args)]
+pub struct PageOptions {
+    /// A recording (.rrd) or trajectories (.sqlite, .db, .txt, .csv, .h5), of the sandbox, JuPedSim or others
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// The page [default: the run's name with .html, in the working directory]
+    #[arg(short, long, value_name = "FILE", value_parser = page())]
+    pub out: Option<PathBuf>,
+    /// Floor plan of a trajectory file (WKT, GeoJSON, JuPedSim XML), or `none` [default: that of the file]
+    #[arg(long, value_name = "FILE|none")]
+    pub geometry: Option<PathBuf>,
+    /// Unit of the coordinates in a trajectory file [default: that of the file, else m]
+    #[arg(long, value_parser = PossibleValuesParser::new(["m", "cm"]))]
+    pub unit: Option<String>,
+    /// Frame rate of a trajectory file that does not have it
+    #[arg(long, value_name = "N", value_parser = frame_rate)]
+    pub trajectory_fps: Option<f64>,
+    /// Put the Rerun viewer and the recording into the page, too: the folder of the Python package `rerun_notebook`
+    /// 0.36.3
+    #[arg(long, value_name = "DIR")]
+    pub page_viewer: Option<PathBuf>,
+    #[command(flatten)]
+    pub program: ProgramOptions,
+}
+
+pub fn run(options: &PageOptions) -> Result<(), Failure> {
+    use_threads(options.program.threads)?;
+    let mut outputs = Outputs::new(options.program.force);
+    let out = options.out.clone().unwrap_or_else(|| {
+        let stem = options.run.file_stem().unwrap_or_default();
+        Path::new(stem).with_added_extension("html")
+    });
+    let mut run = open(options, &mut outputs)?;
+    outputs.writes("--out", &out, Manner::InPlace);
+    outputs.check()?;
+    let viewer = options
+        .page_viewer
+        .as_deref()
+        .map(EmbeddedViewer::in_package);
+    let viewer = viewer
+        .transpose()?
+        .map(|viewer| (viewer, options.run.as_path()));
+    let frames = rayon::scope(|_| write(&mut run, &out, viewer.as_ref()))?;
+    let file = out.display().to_string();
+    let bytes = out.metadata().map_or(0, |about| about.len());
+    let [first, last] = run.times.unwrap_or_default();
+    tell(
+        options.program.json,
+        || json!({"file": file, "frames": frames, "from_secs": first, "to_secs": last, "bytes": bytes}),
+        || {
+            format!(
+                "{file}: {frames} frames from {first:.2} s to {last:.2} s, {:.1} MB\n",
+                bytes as f64 * 1e-6
+            )
+        },
+    )
+}
+
+fn open(options: &PageOptions, outputs: &mut Outputs) -> Result<Run, Failure> {
+    let path = options.run.as_path();
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    if extension == "rrd" {
+        outputs.reads("the recording", path);
+        let given = [
+            ("--geometry", options.geometry.is_some()),
+            ("--unit", options.unit.is_some()),
+            ("--trajectory-fps", options.trajectory_fps.is_some()),
+        ];
+        if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
+            let problem = format!("{option} is for trajectory files, not for recordings");
+            return Err(Failure::Input(problem));
+        }
+        return recorded::open(path);
+    }
+    if options.page_viewer.is_some() {
+        let problem = "--page-viewer is for recordings: the Rerun viewer shows no trajectory files";
+        return Err(Failure::Input(problem.to_owned()));
+    }
+    outputs.reads("the trajectories", path);
+    let plan = options.geometry.as_deref();
+    if let Some(plan) = plan.filter(|plan| plan.as_os_str() != NO_WALLS) {
+        outputs.reads("--geometry", plan);
+    }
+    let read = ReadOptions {
+        unit: options.unit.as_deref().and_then(Unit::named),
+        fps: options.trajectory_fps,
+    };
+    tracked::open(path, &read, plan, &["density", "speed"])
+}
+
+/// Writes the page; returns the number of frames.
+fn write(
+    run: &mut Run,
+    out: &Path,
+    viewer: Option<&(EmbeddedViewer, &Path)>,
+) -> Result<usize, Failure> {
+    let scenario = run.scenario.as_ref();
+    let description = scenario.map_or("", |scenario| scenario.description.as_str());
+    let content = Content {
+        title: run.title.clone(),
+        description: description.to_owned(),
+        density_range: run.density_range,
+        speed_range: run.speed_range,
+        has_viewer: viewer.is_some(),
+        opens_at: scenario.and_then(|scenario| scenario.view.opens_at_secs),
+        ..Content::watched()
+    };
+    let nobody = Crowd::default();
+    let picture = Picture {
+        observed: &run.observed,
+        labels: &run.labels,
+        ..Picture::of_scene((run.frames.scene(), &nobody), String::new(), run.view)
+    };
+    let mut page = Page::create(out, &picture, &content)?;
+    let times = run.frames.times().to_vec();
+    let progress = bar(
+        times.len() as u64,
+        "{bar:30} {pos} of {len} frames, {eta} left",
+    );
+    for &time in &times {
+        run.frames.go_to(time)?;
+        let column = |name| -> Result<Vec<f64>, Failure> {
+            Ok(run.frames.column(name)?.unwrap_or_default())
+        };
+        let (density, speed) = (column("density")?, column("speed")?);
+        page.add(&Moment::watched(run.frames.crowd(), density, speed))?;
+        progress.inc(1);
+    }
+    if let Some((viewer, recording)) = viewer {
+        page.embed(viewer, recording)?;
+    }
+    page.finish(&found(run, times.len()))?;
+    Ok(times.len())
+}
+
+/// The results of the run if the file has them, else what the file says about itself.
+fn found(run: &Run, frames: usize) -> String {
+    let report = run.report.as_deref();
+    let report = report.and_then(|text| serde_json::from_str::<Value>(text).ok());
+    if let Some(report) = report {
+        return results(&reproducible(report), run.scenario.as_ref());
+    }
+    let [first, last] = run.times.unwrap_or_default();
+    let rows = [
+        ("frames", frames.to_string()),
+        ("first frame [s]", format!("{first:.3}")),
+        ("last frame [s]", format!("{last:.3}")),
+        ("densities", DENSITIES.to_owned()),
+    ];
+    let rows = rows.map(|(name, value)| (name.to_owned(), value));
+    let table = section("Trajectories", &pairs(&rows).html());
+    format!("<section class=\"results\">\n{table}</section>\n")
+}

@@ -1,0 +1,102 @@
+//! The content of a page beside its frames.
+
+use crate::engine::scene::{Group, Scene};
+use crate::output::colors::Rgb;
+use crate::output::recording::force_terms;
+use crate::output::scenery;
+use crate::output::series::{self, CROWD, Count};
+
+/// The plots of the first time series of [`CROWD`]; a page has neither energies nor computing times.
+const PLOTS: [&str; 5] = [
+    "People",
+    "People",
+    "Density [P/m²]",
+    "Density [P/m²]",
+    "Speed [m/s]",
+];
+const WAITING: Rgb = [230, 159, 0];
+
+/// The content of a page beside its frames.
+#[derive(Debug, Clone, Default)]
+pub struct PageOptions {
+    /// Its title.
+    pub title: String,
+    /// A description in a sentence; may be empty.
+    pub description: String,
+    /// The densities with the first and the last color, P/m².
+    pub density_range: [f64; 2],
+    /// The speeds with the first and the last color, m/s.
+    pub speed_range: [f64; 2],
+    /// The time that it shows first, seconds; `None`: the first frame.
+    pub opens_at: Option<f64>,
+    /// Whether it gets the Rerun viewer, see [`Page::embed`](super::Page::embed).
+    pub has_viewer: bool,
+    /// The person that it follows first.
+    pub follows: Option<u32>,
+    /// The groups of people: name, profile, and journey or nothing.
+    pub groups: Vec<[String; 3]>,
+    /// The names of the places to which people walk.
+    pub places: Vec<String>,
+    /// Whether journeys have several stages, by which people can be colored.
+    pub has_stages: bool,
+    /// The names and colors of the terms of accelerations, the sum first; empty without forces.
+    pub terms: Vec<(String, Rgb)>,
+    /// The time series: plot, name and color.
+    pub series: Vec<(String, String, Rgb)>,
+}
+
+impl PageOptions {
+    /// A page of people of whom only positions, speeds and densities are known.
+    pub fn watched() -> Self {
+        let crowd = CROWD.iter().zip(PLOTS);
+        let series = crowd.map(|((_, name, color), plot)| {
+            let name = name.split_once(" [").map_or(*name, |(name, _)| name);
+            (plot.to_owned(), name.to_owned(), *color)
+        });
+        Self {
+            series: series.collect(),
+            ..Self::default()
+        }
+    }
+
+    /// A page of a run in a scene.
+    pub fn of(scene: &Scene, has_forces: bool) -> Self {
+        let mut page = Self::watched();
+        let waiting = series::waiting(scene);
+        page.series
+            .extend(waiting.map(|name| ("People".to_owned(), name, WAITING)));
+        page.series
+            .extend(series::of_places(scene).map(|(number, _, count)| {
+                let (name, color) = series::look(scene, number);
+                let plot = match count {
+                    Count::Present => "Waiting areas and queues",
+                    Count::Passed => "Passed exits",
+                };
+                (plot.to_owned(), name, color)
+            }));
+        let group = |group: &Group| {
+            let journey = group.journey.map(usize::from);
+            let journey = journey.and_then(|k| scene.journeys.journeys.get(k));
+            let journey = journey.map(|journey| journey.name.clone());
+            [
+                group.name.clone(),
+                group.blend.name.clone(),
+                journey.unwrap_or_default(),
+            ]
+        };
+        let places = scene.journeys.places.iter();
+        Self {
+            groups: scene.groups.iter().map(group).collect(),
+            places: places
+                .map(|place| scenery::named(place.kind.name(), &place.name))
+                .collect(),
+            has_stages: scenery::has_stages(scene),
+            terms: if has_forces {
+                force_terms(scene)
+            } else {
+                Vec::new()
+            },
+            ..page
+        }
+    }
+}
