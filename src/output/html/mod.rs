@@ -1,8 +1,9 @@
 //! HTML files of one piece: a page that plays a run, a report. They have no links to other files, and their content
 //! security policy forbids requests, so they open from a disk and can be mailed.
 //!
-//! How to write one: a [`Head`] begins the file, [`escape`] makes text of any string, [`Table::html`] a table, [`picture`]
-//! shows an SVG drawing, [`data`] and [`bytes`] hold what a script reads, and [`END`] ends the file. The style sheet
+//! How to write one: a [`Head`] begins the file, [`escape`] makes text of any string, [`Table::html`] a table,
+//! [`picture`] shows an SVG drawing, [`data`] and [`bytes`] hold what a script reads, and [`END`] ends the file. The
+//! style sheet
 //! `style.css` has the look that all of them share; a kind of file adds its own rules.
 //!
 //! [`Table::html`]: crate::output::table::Table::html

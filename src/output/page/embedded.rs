@@ -1,4 +1,5 @@
-//! The Rerun viewer in a page, from an installed package of Python: for the whole recording, beside the page's own plan.
+//! The Rerun viewer in a page, from an installed package of Python: for the whole recording, beside the page's own
+//! plan.
 
 use std::fs::File;
 use std::io::{self, Read};

@@ -34,8 +34,8 @@ pub enum Part {
 pub enum PageError {
     /// A folder has no viewer.
     #[error(
-        "{}: no viewer for pages: {reason}; `pip install rerun-notebook==0.36.3` installs the package `rerun_notebook`, \
-         whose folder is needed",
+        "{}: no viewer for pages: {reason}; `pip install rerun-notebook==0.36.3` installs the package \
+         `rerun_notebook`, whose folder is needed",
         folder.display()
     )]
     NoViewer {

@@ -1,7 +1,8 @@
 //! A page that plays a run in a browser: one HTML file without requests. `docs/pages.md` has its format.
 //!
-//! The file is written part by part while the run goes on, so memory does not grow with the length of the run, and a run
-//! that is killed leaves a page that plays up to its last part. `viewer/` has the script, its style and its elements.
+//! The file is written part by part while the run goes on, so memory does not grow with the length of the run, and a
+//! run that is killed leaves a page that plays up to its last part. `viewer/` has the script, its style and its
+//! elements.
 
 mod block;
 mod embedded;
@@ -28,7 +29,8 @@ use block::Block;
 use file::{PageFile, Part};
 use plan::{hex, millimeters};
 
-/// The unit of positions, meters: no coordinate is more than half of it off, so no position is more than 0.71 of it off.
+/// The unit of positions, meters: no coordinate is more than half of it off, so no position is more than 0.71 of it
+/// off.
 pub const POSITION: f64 = 0.01;
 /// The unit of densities, P/m².
 pub const DENSITY: f64 = 0.02;

@@ -312,8 +312,8 @@ impl<'a> Picture<'a> {
         marks
     }
 
-    /// What does not move, for a viewer with its own scale: the part of the plane that it shows, what lies below agents,
-    /// and what lies above them.
+    /// What does not move, for a viewer with its own scale: the part of the plane that it shows, what lies below
+    /// agents, and what lies above them.
     pub fn plan(&self) -> ([Vector; 2], Vec<Mark>, Vec<Mark>) {
         let shown = self.shown();
         let frame = Frame::around(shown, ALONE, MARGIN);

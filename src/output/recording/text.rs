@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use rerun::external::arrow::array::{ArrayRef, Float64Array, StringArray, UInt64Array};
-use rerun::{AnyValues, RecordingStream, TextDocument};
+use rerun::{AnyValues, ComponentIdentifier, RecordingStream, TextDocument};
 use serde_json::Value;
 
 use super::debug::DebugAgents;
@@ -184,16 +184,16 @@ pub fn log_results(stream: &RecordingStream, text: &str, json: &str) -> Result<(
     let report: Value = serde_json::from_str(json)?;
     let metrics = report["metrics"].as_object().into_iter().flatten();
     let numbers = metrics.filter_map(|(name, value)| Some((name, value.as_f64()?)));
-    let numbers: Vec<_> = numbers.collect();
-    if numbers.is_empty() {
-        return Ok(());
+    let mut properties = None;
+    for (name, value) in numbers {
+        let value = Arc::new(Float64Array::from(vec![value]));
+        let name = ComponentIdentifier::try_new(name.as_str())?;
+        let others = properties.unwrap_or_else(AnyValues::default);
+        properties = Some(others.with_component_from_data(name, value));
     }
-    let properties = numbers
-        .into_iter()
-        .fold(AnyValues::default(), |properties, (name, value)| {
-            let value = Arc::new(Float64Array::from(vec![value]));
-            properties.with_component_from_data(name.as_str(), value)
-        });
+    let Some(properties) = properties else {
+        return Ok(());
+    };
     Ok(stream.send_property("results", &properties)?)
 }
 

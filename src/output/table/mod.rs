@@ -2,8 +2,8 @@
 //!
 //! A column says how a row fills it. Text, Markdown and HTML show numbers as their column formats them, CSV with all
 //! digits. A missing number is `–` there, and empty in CSV. Names for readers end in their unit, as in `speed [m/s]`,
-//! those for programs are words, as in `speed_m_per_s`. JSON does not come from tables: it is the serde form of the rows
-//! themselves.
+//! those for programs are words, as in `speed_m_per_s`. JSON does not come from tables: it is the serde form of the
+//! rows themselves.
 
 mod cell;
 

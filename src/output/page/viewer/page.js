@@ -51,7 +51,8 @@ class Page {
 
   setUp() {
     const $ = id => document.getElementById(id), on = (id, does) => $(id).addEventListener("click", does);
-    const names = { density: "density", speed: "speed", ...(this.people.stages.length && { stage: "stage of the journey" }) };
+    const names = { density: "density", speed: "speed" };
+    if (this.people.stages.length) names.stage = "stage of the journey";
     $("color").append(...Object.entries(names).map(([value, text]) => element("option", { value, textContent: text })));
     $("color").addEventListener("change", event => {
       this.color = event.target.value;
@@ -218,9 +219,11 @@ class Page {
   draw() {
     const block = this.people.goTo(this.time);
     document.getElementById("state").textContent = block ? "" : this.run.starts.length ? "reading …" : "no frames";
+    const isFirst = block && !this.isShown;
     this.isDirty = false;
     this.isShown = Boolean(block);
     if (!block) return;
+    if (isFirst) this.describe();
     this.chase();
     const coloring = this.people.coloring(this.color), radius = this.scene.units.radius;
     const isCovered = this.plan.isStale || this.hovered || this.pointer || this.followed !== null || this.wasFollowed;
@@ -314,7 +317,8 @@ class Page {
     tip.hidden = !this.hovered;
     $("top").classList.toggle("points", Boolean(this.hovered));
     if (this.hovered) {
-      tip.replaceChildren(...this.people.facts(this.hovered).map(([name, value]) => element("div", {}, `${name} ${value}`)));
+      const lines = this.people.facts(this.hovered).map(([name, value]) => element("div", {}, `${name} ${value}`));
+      tip.replaceChildren(...lines);
       const [x, y] = this.plan.toScreen(this.hovered.place);
       tip.style.left = `${Math.max(4, Math.min(x + 16, this.plan.width - tip.offsetWidth - 4))}px`;
       tip.style.top = `${Math.max(4, Math.min(y + 14, this.plan.height - tip.offsetHeight - 4))}px`;
