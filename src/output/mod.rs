@@ -1,6 +1,6 @@
 //! Output: HTML files and tables, Rerun recordings (the only module that names `rerun`), trajectories (SQLite, text and
-//! CSV), pictures and animations (SVG, PNG, PDF, GIF, APNG and video; the only module that names `plotters`), pages that
-//! play a run in a browser, and documents.
+//! CSV), pictures and animations (SVG, PNG, PDF, GIF, APNG and video; the only module that names `plotters`), pages
+//! that play a run in a browser, and documents.
 
 pub mod html;
 
