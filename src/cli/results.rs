@@ -134,7 +134,7 @@ fn times_out(summary: &Summary) -> String {
     ];
     let times = times.map(|(part, secs)| match secs {
         Some(secs) => format!("{part} at {secs:.2} s"),
-        None => format!("{part} never"),
+        None => format!("{part} not by the end"),
     });
     times.join(", ")
 }
@@ -174,48 +174,46 @@ fn stuck_because(groups: &[StuckGroup]) -> String {
     text
 }
 
-/// The values of the measurements, one group per measurement. Values of 0 are listed together.
+/// The values of the measurements, one group per measurement. Values of 0 stand together in lines, and missing ones.
 fn measured(run: &Run) -> String {
     let metrics = run.metrics.results(&run.simulation);
     let published = published_for(&run.scenario);
     let names = metrics.iter().map(|metric| metric.name.chars().count());
     let width = names.fold(NAME_WIDTH, usize::max);
+    let line = |metric: &Metric| {
+        let value = match (value(metric), metric.value) {
+            (Value::Number(count), _) if count.is_u64() => count.to_string(),
+            (_, Some(value)) => format!("{value:.3}"),
+            (_, None) => "–".to_owned(),
+        };
+        let paper = published.iter().find(|(name, _)| *name == metric.name);
+        let paper = paper.map(|(_, paper)| format!("  (paper, Table 1: {paper})"));
+        let (name, unit, paper) = (&metric.name, metric.unit, paper.unwrap_or_default());
+        let line = format!("  {name:<width$} {value:>10} {unit}{paper}");
+        format!("{}\n", line.trim_end())
+    };
     let mut text = String::new();
-    let mut before = 0;
+    let mut before = 2;
     for group in metrics.chunk_by(|one, other| one.measurement == other.measurement) {
         // Groups stand apart.
-        text += if before.max(group.len()) > 1 || before == 0 {
-            "\n"
-        } else {
-            ""
-        };
-        before = group.len();
-        let is_zero = |metric: &&Metric| metric.value == Some(0.0);
-        let zeros = group.iter().filter(is_zero).count();
-        let folds = |metric: &&Metric| zeros > 1 && is_zero(metric);
-        for metric in group.iter().filter(|metric| !folds(metric)) {
-            let value = match (value(metric), metric.value) {
-                (Value::Number(count), _) if count.is_u64() => count.to_string(),
-                (_, Some(value)) => format!("{value:.3}"),
-                (_, None) => "–".to_owned(),
-            };
-            let paper = published.iter().find(|(name, _)| *name == metric.name);
-            let paper = paper.map(|(_, paper)| format!("  (paper, Table 1: {paper})"));
-            let (paper, unit) = (paper.unwrap_or_default(), metric.unit);
-            text += &format!("  {:<width$} {value:>10} {unit}{paper}\n", metric.name);
+        if before.max(group.len()) > 1 {
+            text.push('\n');
         }
-        text += &zero(
-            group
-                .iter()
-                .filter(folds)
-                .map(|metric| metric.name.as_str()),
-        );
+        before = group.len();
+        let alike = |value| group.iter().filter(move |metric| metric.value == value);
+        let mut folded = vec![("0:", Some(0.0)), ("–:", None)];
+        folded.retain(|(_, value)| alike(*value).count() > 1);
+        let stands = |metric: &&Metric| folded.iter().all(|(_, value)| metric.value != *value);
+        text.extend(group.iter().filter(stands).map(line));
+        for &(head, value) in &folded {
+            text += &names_of(head, alike(value).map(|metric| metric.name.as_str()));
+        }
     }
     text
 }
 
-/// The names of values of 0, in lines.
-fn zero<'a>(names: impl Iterator<Item = &'a str>) -> String {
+/// The names of values that are alike, in lines.
+fn names_of<'a>(head: &str, names: impl Iterator<Item = &'a str>) -> String {
     let mut lines: Vec<String> = Vec::new();
     for name in names {
         match lines.last_mut() {
@@ -224,9 +222,8 @@ fn zero<'a>(names: impl Iterator<Item = &'a str>) -> String {
         }
     }
     let lines = lines.iter().enumerate();
-    let lines = lines.map(|(k, line)| format!("  {} {line}", if k == 0 { "0:" } else { "  " }));
-    let text = lines.collect::<Vec<_>>().join(",\n");
-    if text.is_empty() { text } else { text + "\n" }
+    let lines = lines.map(|(k, line)| format!("  {} {line}", if k == 0 { head } else { "  " }));
+    lines.collect::<Vec<_>>().join(",\n") + "\n"
 }
 
 /// The ids of the agents that `integrity` has found in walls; empty without any.

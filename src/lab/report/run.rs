@@ -59,11 +59,7 @@ pub fn of_run(run: &Run, sources: Sources) -> Document {
             blocks.push(Block::Table(facts::table(&facts), caption));
         }
     }
-    blocks.push(Block::text(
-        "ρ_i is the density of measurements: a kernel with a support radius of √5 m over the person and all that it \
-         sees. docs/measurements.md has the formulas, sources and limits. A dash stands for a value that the run has \
-          not.",
-    ));
+    blocks.push(Block::text(facts::DENSITY));
     let later: Vec<(f64, Sheet)> = pictures.collect();
     if !later.is_empty() {
         blocks.push(Block::heading("Pictures"));

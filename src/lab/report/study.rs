@@ -76,7 +76,7 @@ pub fn of_study(gathered: &Gathered, [command, report]: [&str; 2]) -> Result<Doc
         .column("definition", |number| number.meaning.as_str())
         .table();
     blocks.push(Block::text("What the results mean:"));
-    blocks.push(Block::Table(definitions, String::new()));
+    blocks.push(Block::Table(definitions, facts::DENSITY.to_owned()));
     blocks.extend(figures(gathered, &combinations, &names));
     blocks.push(Block::heading("Scenario"));
     if let (Some(scenario), Some(name)) = (scenarios.first(), names.first()) {
@@ -200,7 +200,7 @@ fn figures(gathered: &Gathered, combinations: &[Combination], names: &[String]) 
         over: Vec::new(),
     };
     if let Ok(Some(sheet)) = gathered.sheet(&drawing) {
-        let caption = "Results over the varied settings; bars are the 95 % confidence intervals of the means.";
+        let caption = "Results over the varied settings; bands and bars are the 95 % confidence intervals of the means.";
         blocks.push(Block::heading("Figures"));
         // Panels as large as those of other figures: few in each.
         blocks.extend(sheet.panels.chunks(PANELS).map(|panels| {
