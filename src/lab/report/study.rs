@@ -200,7 +200,7 @@ fn figures(gathered: &Gathered, combinations: &[Combination], names: &[String]) 
         over: Vec::new(),
     };
     if let Ok(Some(sheet)) = gathered.sheet(&drawing) {
-        let caption = "Results over the varied settings; bands and bars are the 95 % confidence intervals of the means.";
+        let caption = "Results over the varied settings; bands and bars are 95 % confidence intervals of the means.";
         blocks.push(Block::heading("Figures"));
         // Panels as large as those of other figures: few in each.
         blocks.extend(sheet.panels.chunks(PANELS).map(|panels| {
