@@ -6,7 +6,7 @@ use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 
 use crate::lab::reproduce::published_for;
-use crate::output::table::Table;
+use crate::output::results as tables;
 use crate::runs::drive::{End, Run};
 use crate::runs::identity::Identity;
 use crate::runs::summary::{JourneyResult, PlaceResult, Summary, value};
@@ -246,24 +246,8 @@ fn journeys(run: &Run) -> String {
     if journeys.is_empty() {
         return String::new();
     }
-    let journeys = Table::of(&journeys)
-        .column("journey", |row| shown(&row.name))
-        .column("started", |row| row.left.started)
-        .column("left", |row| row.left.finished)
-        .fixed("mean s", 1, |row| row.left.mean_secs)
-        .fixed("50 % at s", 1, |row| row.left.t50_secs)
-        .fixed("95 %", 1, |row| row.left.t95_secs)
-        .fixed("all", 1, |row| row.left.t100_secs)
-        .fixed("waited s", 1, |row| row.left.waited_secs);
-    let places = Table::of(&places)
-        .column("place", |row| shown(&row.name))
-        .column("kind", |row| row.kind.as_str())
-        .column("passed", |row| row.passed)
-        .fixed("share %", 1, |row| row.share.map(|share| 100.0 * share))
-        .fixed("first s", 1, |row| row.from_to_secs.map(|[first, _]| first))
-        .fixed("last s", 1, |row| row.from_to_secs.map(|[_, last]| last))
-        .fixed("waited s", 1, |row| row.waited_secs);
-    format!("{}\n{}\n", journeys.table().text(), places.table().text())
+    let [journeys, places] = [tables::journeys(&journeys), tables::places(&places)];
+    format!("{}\n{}\n", journeys.text(), places.text())
 }
 
 /// Milliseconds per frame without output files, and the simulated time divided by the run time.

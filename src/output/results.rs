@@ -10,6 +10,7 @@ use crate::runs::drive::End;
 use crate::runs::summary::{JourneyResult, PlaceResult};
 use crate::scenario::Scenario;
 use crate::scenario::measurements::Quantity;
+use crate::scenario::quote::shown;
 
 /// Longer values of settings are cut; the scenario below them is whole.
 const LONGEST: usize = 160;
@@ -147,7 +148,7 @@ fn measurements(report: &Value, scenario: Option<&Scenario>) -> Table {
 /// The journeys that agents have begun.
 pub fn journeys(journeys: &[JourneyResult]) -> Table {
     Table::of(journeys)
-        .column("journey", |row| row.name.as_str())
+        .column("journey", |row| shown(&row.name))
         .column("started", |row| row.left.started)
         .column("left", |row| row.left.finished)
         .fixed("mean s", 1, |row| row.left.mean_secs)
@@ -161,7 +162,7 @@ pub fn journeys(journeys: &[JourneyResult]) -> Table {
 /// The places of these journeys.
 pub fn places(places: &[PlaceResult]) -> Table {
     Table::of(places)
-        .column("place", |row| row.name.as_str())
+        .column("place", |row| shown(&row.name))
         .column("kind", |row| row.kind.as_str())
         .column("passed", |row| row.passed)
         .fixed("share %", 1, |row| row.share.map(|share| 100.0 * share))

@@ -112,7 +112,6 @@ impl Page {
             "places": options.places,
             "terms": terms.collect::<Vec<_>>(),
             "series": series.collect::<Vec<_>>(),
-            "period": plan.scene.period.as_ref().map(|period| period.length),
         });
         let script = match options.has_viewer {
             true => format!("{SCRIPT}{RERUN}"),
