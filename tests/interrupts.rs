@@ -57,7 +57,10 @@ fn sigterm_ends_a_run_with_its_summary() {
     let output = stop_with(start_and_wait(&run, &[(&sqlite, 0)]), "kill -TERM $1");
     assert_eq!(output.status.code(), Some(143));
     let summary = String::from_utf8(output.stdout).unwrap();
-    assert!(summary.contains("s: it was interrupted."), "{summary}");
+    assert!(
+        summary.contains("It ended: it was interrupted."),
+        "{summary}"
+    );
     let frames = summary.lines().next().unwrap().strip_suffix(" frames");
     let frames: i64 = frames.unwrap().rsplit(' ').next().unwrap().parse().unwrap();
     let connection = rusqlite::Connection::open(&sqlite).unwrap();
