@@ -186,16 +186,14 @@ fn block(bytes: &[u8], columns: usize, radius: f64) -> Vec<People> {
         let [first, count] = [numbers.number(), numbers.number()].map(|n| n as usize);
         let own = f64::from(numbers.number() as u32) * radius;
         let group = numbers.number() as usize;
-        for frame in first..first + count {
+        assert!(first + count <= frames);
+        for here in people.iter_mut().skip(first).take(count) {
             let person = Person {
                 group,
                 radius: own,
                 values: Vec::new(),
             };
-            assert!(
-                people[frame].insert(id, person).is_none(),
-                "{id} twice in a frame"
-            );
+            assert!(here.insert(id, person).is_none(), "{id} twice in a frame");
         }
         heads.push((id, first, count));
     }

@@ -95,7 +95,9 @@ impl Overview {
         let densities = &frame.fields.density;
         let mut most = self.highest.map_or(0.0, |highest| highest.density_per_m2);
         let mut found = None;
-        for i in frame.agents.present() {
+        // A frame of a damaged checkpoint may have no densities.
+        let known = frame.agents.present().filter(|&i| i < densities.len());
+        for i in known {
             if densities[i] > most {
                 (most, found) = (densities[i], Some(i));
             }
