@@ -96,9 +96,9 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
         let reason = "--seeds is for coverage: sandbox accuracy coverage --seeds 100".to_owned();
         return Err(Failure::Input(reason));
     }
-    let of_estimates = OF_ESTIMATES.iter().map(|(name, _)| *name);
-    let study = of_estimates.filter(|study| options.scene.iter().any(|name| name == study));
-    if let Some(study) = study.last() {
+    let mut of_estimates = OF_ESTIMATES.iter().map(|(name, _)| *name);
+    let is_asked = |study: &&str| options.scene.iter().any(|name| name == study);
+    if let Some(study) = of_estimates.find(is_asked) {
         if options.scene.len() > 1 || !options.knob.is_empty() {
             let reason =
                 format!("{study} is a study of its own: name no scene and no knob beside it");
