@@ -6,6 +6,7 @@ use sandbox::engine::math::Vector;
 use sandbox::runs::drive::Run;
 use sandbox::scenario::Scenario;
 use sandbox::scenario::catalog::names;
+use sandbox::scenario::measurements::Watched;
 use serde_json::{Value, json};
 
 use crate::common::floors::Plan;
@@ -127,4 +128,42 @@ fn the_report_names_all_agents_without_headway_on_random_floors_and_no_others() 
         stuck as u64 > cases && walking as u64 > cases,
         "{stuck}, {walking}"
     );
+}
+
+/// The least gap of floors on which a crowd of agents with arching bodies flows, meters.
+const WIDE_GAP: f64 = 1.2;
+
+#[test]
+fn agents_who_choose_headings_arrive_on_random_floors_and_pass_no_wall() {
+    let cases: u64 = std::env::var("SANDBOX_CASES").map_or(20, |cases| cases.parse().unwrap());
+    let mut arrived = 0;
+    for case in 0..cases {
+        let mut rng = ChaCha8Rng::seed_from_u64(case);
+        let plan = Plan::with_gaps(&mut rng, 8, WIDE_GAP);
+        let Some((mut document, _)) = crowd(&plan, "steer+sph", &mut rng) else {
+            continue;
+        };
+        for agent in document["agents"].as_array_mut().unwrap() {
+            agent["preferred_speed"] = json!(1.34);
+        }
+        let scenario = Scenario::parse(&document.to_string(), "f.json", &[]).unwrap();
+        let mut run = Run::new(scenario).unwrap();
+        let mut watched = Watched::default();
+        let people = document["agents"].as_array().unwrap().len();
+        let simulation = &mut run.simulation;
+        while !simulation.frame().agents.is_empty() {
+            simulation.evaluate().unwrap();
+            watched.observe(simulation);
+            simulation.integrate().unwrap();
+            let frame = simulation.frame();
+            assert!(
+                frame.clock.time() < 120.0,
+                "case {case}: {} of {people} are left behind",
+                frame.agents.len()
+            );
+        }
+        assert_eq!(watched.agents_through_walls(simulation), 0, "case {case}");
+        arrived += people as u64;
+    }
+    assert!(arrived > 5 * cases, "{arrived}");
 }

@@ -3,11 +3,11 @@
 use super::evaluate::{Evaluated, Sample};
 use super::file::Rule;
 use super::scene::Target;
+use crate::lab::suite::in_tolerances;
 
-/// The ratio of a value to the measured one in tolerances: ln(value/measured)/ln(1 + tolerance). It is 1 at the upper
-/// end of the tolerance. Twice and half the measured value have residuals of equal size.
+/// The ratio of a value to the measured one in tolerances.
 pub fn ratio(value: f64, target: &Target) -> f64 {
-    (value / target.measured).ln() / target.tolerance.ln_1p()
+    in_tolerances(value, [target.measured, target.tolerance])
 }
 
 /// The residual of the mean over the seeds that gave a value, clipped; `None` without values.

@@ -32,6 +32,12 @@ pub struct Judgment {
     pub run: Option<String>,
 }
 
+/// The ratio of a value to a measured one in tolerances: ln(value/measured)/ln(1 + tolerance). It is 1 at the upper end
+/// of the tolerance. Twice and half the measured value have deviations of equal size.
+pub fn in_tolerances(value: f64, [measured, tolerance]: [f64; 2]) -> f64 {
+    (value / measured).ln() / tolerance.ln_1p()
+}
+
 impl Runs<'_> {
     /// The profile; empty without runs.
     pub fn profile(&self) -> &str {
@@ -180,6 +186,16 @@ impl Judgment {
         let [low, high] = self.expected.bounds();
         let range = low - ROUNDING..=high + ROUNDING;
         self.expected == Expected::Any || self.value.is_some_and(|value| range.contains(&value))
+    }
+
+    /// The deviation of the value from a measured one, in tolerances.
+    pub fn deviation(&self) -> Option<f64> {
+        match self.expected {
+            Expected::Near { value, tolerance } => {
+                Some(in_tolerances(self.value?, [value?, tolerance]))
+            }
+            _ => None,
+        }
     }
 
     /// The difference of the value from a measured one, as a fraction of the measured value.

@@ -11,6 +11,12 @@ struct Line {
     counts: Vec<[usize; 2]>,
 }
 
+/// Whether the profile was fitted to the value of this check.
+pub fn is_fitted(finding: &Finding, check: usize) -> bool {
+    let check = finding.case.checks.get(check);
+    check.is_some_and(|check| check.fitted.contains(&finding.profile))
+}
+
 impl Report<'_> {
     /// How many values of each profile are as expected: a table with a line for each kind of case, then for values that
     /// the profile was fitted to, and for the others. Empty if no case has a kind.
@@ -33,16 +39,12 @@ impl Report<'_> {
                 finding.case.kind.as_deref() == Some(kind)
             })
         });
-        let fitted = |finding: &Finding, check: usize| {
-            let checks = &finding.case.checks;
-            checks
-                .get(check)
-                .is_some_and(|of| of.fitted.contains(&finding.profile))
-        };
         let last = [
             self.line("all", |_, _| true),
-            self.line("fitted to it", fitted),
-            self.line("not fitted to it", |finding, check| !fitted(finding, check)),
+            self.line("fitted to it", is_fitted),
+            self.line("not fitted to it", |finding, check| {
+                !is_fitted(finding, check)
+            }),
         ];
         let lines: Vec<Line> = of_kind.chain(last).collect();
         let mut table =

@@ -7,6 +7,7 @@
 mod check;
 mod counts;
 mod data;
+mod deviations;
 mod diagrams;
 mod file;
 mod keys;
@@ -16,7 +17,7 @@ mod quantity;
 mod report;
 mod run;
 
-pub use check::{Judgment, Runs};
+pub use check::{Judgment, Runs, in_tolerances};
 pub use file::Suite;
 pub use keys::{Case, Check, Expected};
 pub use report::{Finding, Report, Skipped};

@@ -8,7 +8,7 @@ use super::file::Suite;
 use super::keys::{Case, Expected};
 use super::known::{check_runs, label};
 use super::report::{Finding, Report, Skipped, THROUGH_WALLS};
-use super::{data, diagrams, pictures};
+use super::{data, deviations, diagrams, pictures};
 use crate::lab::error::LabError;
 use crate::lab::gallery::{distinct, save};
 use crate::lab::jobs::{read, results};
@@ -162,6 +162,7 @@ impl<'a> Planned<'a> {
         report.write(store)?;
         if judged == Judged::Means {
             save(store.folder(), diagrams::sheets(&self.suite.cases, &runs))?;
+            save(store.folder(), deviations::sheet(&report))?;
         }
         pictures::save(&self.cases, &cells, store, listener)?;
         Ok(report)

@@ -16,11 +16,11 @@ use std::ops::Range;
 
 use schemars::JsonSchema;
 
-use super::{FADE, View, Walkers};
+use super::{FADE, Motions, ROUNDING, View, Walkers};
 use crate::engine::forces::rates::Rates;
 use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
+use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat};
 
 /// Parameters of the headway law.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
@@ -91,7 +91,7 @@ impl Headway {
             length: self.headway_length,
             time: self.headway_time,
             aside: (1.0 + FADE) * self.lane_half_width,
-            spread: 0.0,
+            ..View::default()
         }
     }
 
@@ -124,8 +124,7 @@ impl Headway {
         let velocity_y = load(simd, &bodies.velocity_y, walkers.start);
         let [x, y] = walkers.backwards;
         let mut sum = Nearest {
-            velocity: [&bodies.velocity_x, &bodies.velocity_y],
-            heading: [&bodies.heading_x, &bodies.heading_y],
+            motions: Motions::of(bodies),
             backwards_speed: velocity_y.mul_add(y, velocity_x * x),
             time: splat::<R, S>(simd, self.headway_anticipation / bodies.unit),
             backwards: walkers.backwards,
@@ -133,6 +132,7 @@ impl Headway {
             per_fade: splat::<R, S>(simd, bodies.unit / fade),
             edge: splat::<R, S>(simd, -self.lane_half_width / fade),
             squared: range_squared,
+            farthest: range_squared * splat::<R, S>(simd, ROUNDING),
         };
         add_pairs(simd, bodies, (walkers.start, runs), &mut sum);
         let distance = sum.squared.sqrt() * unit;
@@ -146,10 +146,7 @@ impl Headway {
 
 /// The least d*² for eight agents i, at most R².
 struct Nearest<'a, R: Real, S: Simd> {
-    /// The velocities of all agents, m/s.
-    velocity: [&'a [R]; 2],
-    /// ê_j of all agents.
-    heading: [&'a [R]; 2],
+    motions: Motions<'a, R>,
     /// −v_i·ê_i, m/s.
     backwards_speed: Lanes<R, S>,
     /// t, seconds times coordinate units per meter.
@@ -164,41 +161,39 @@ struct Nearest<'a, R: Real, S: Simd> {
     edge: Lanes<R, S>,
     /// The least d*² so far, coordinate units².
     squared: Lanes<R, S>,
+    /// A little more than it, coordinate units².
+    farthest: Lanes<R, S>,
 }
 
 impl<'a, R: Real, S: Simd> PairSum<R, S> for Nearest<'a, R, S> {
-    type Run = [&'a [R]; 4];
+    type Run = Motions<'a, R>;
 
     #[inline(always)]
-    fn run(&self, run: Range<usize>) -> [&'a [R]; 4] {
-        let [[v_x, v_y], [e_x, e_y]] = [self.velocity, self.heading];
-        [v_x, v_y, e_x, e_y].map(|column| &column[run.clone()])
+    fn run(&self, run: Range<usize>) -> Motions<'a, R> {
+        self.motions.run(run)
     }
 
     #[inline(always)]
-    fn add(
-        &mut self,
-        simd: S,
-        [dx, dy]: [Lanes<R, S>; 2],
-        [velocity_x, velocity_y, heading_x, heading_y]: [&'a [R]; 4],
-        j: usize,
-    ) {
+    fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], motions: Motions<'a, R>, j: usize) {
+        // Ahead, d* is at least the distance, and behind at least R: most agents of a run are farther away.
+        if dy.mul_add(dy, dx * dx).simd_lt(self.farthest).all_false() {
+            return;
+        }
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
         let [x, y] = self.backwards;
         let along = dy.mul_add(y, dx * x);
         let across = (dx * y - dy * x).abs();
         let aside = across.mul_add(self.per_fade, self.edge).max(zero);
         let behind = (one - along * self.per_fade).max(zero);
-        let v_x = spread::<R, S>(simd, velocity_x[j]);
-        let v_y = spread::<R, S>(simd, velocity_y[j]);
+        let [v_x, v_y] = motions.velocity(simd, j);
         let approach = v_y.mul_add(y, v_x * x) - self.backwards_speed;
         let expected = along - self.time * approach.min(zero);
         let squared = across.mul_add(across, expected * expected);
-        let e_x = spread::<R, S>(simd, heading_x[j]);
-        let e_y = spread::<R, S>(simd, heading_y[j]);
+        let [e_x, e_y] = motions.heading(simd, j);
         let against = e_y.mul_add(y, e_x * x).max(zero);
         let outside = against.mul_add(splat::<R, S>(simd, AGAINST), aside + behind);
         let squared = self.range_squared.mul_add(outside, squared);
         self.squared = self.squared.min(squared);
+        self.farthest = self.squared * splat::<R, S>(simd, ROUNDING);
     }
 }

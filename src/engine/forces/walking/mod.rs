@@ -18,6 +18,7 @@ mod density_ahead;
 mod drag;
 pub mod headings;
 mod headway;
+mod walkers;
 
 pub use density_ahead::DensityAhead;
 pub use drag::Drag;
@@ -27,15 +28,13 @@ pub use headway::Headway;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use headings::{COUNT, STRAIGHT};
+use walkers::{Motions, ROUNDING, View, Walkers};
 
 use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, direction};
 use crate::engine::neighbors::BLOCK;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{
-    Bodies, LANES, Lanes, Level, Real, Simd, dispatch, each, lanes_from, splat, store,
-};
+use crate::engine::pairs::{Bodies, LANES, Level, Real, Simd, dispatch, each, store};
 
 /// The walking law of a profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,19 +51,6 @@ pub enum WalkingLaw {
 
 /// Width of the fading edge of a lane and length of its fading beginning, in units of its half-width.
 const FADE: f64 = 0.5;
-
-/// The rectangle ahead of an agent in which it looks for others.
-#[derive(Debug, Clone, Copy, Default)]
-struct View {
-    /// Its length for an agent that stands, meters.
-    length: f64,
-    /// The additional length per preferred speed, seconds.
-    time: f64,
-    /// Its width to each side, meters.
-    aside: f64,
-    /// The additional width to each side per length.
-    spread: f64,
-}
 
 /// The agents of a block that decide now.
 pub struct Due {
@@ -85,18 +71,6 @@ pub struct Decided<'a> {
     pub heading: &'a mut [i8],
 }
 
-/// Eight agents that look ahead.
-struct Walkers<R: Real, S: Simd> {
-    /// The first of them.
-    start: usize,
-    /// −ê_i, zero without preferred velocity.
-    backwards: [Lanes<R, S>; 2],
-    /// s_i: their preferred speeds, m/s.
-    speed: Lanes<R, S>,
-    /// The factors of their time gaps.
-    gap: Lanes<R, S>,
-}
-
 impl WalkingLaw {
     /// Whether the law lowers preferred speeds by the agents ahead.
     pub fn looks_ahead(&self) -> bool {
@@ -110,7 +84,8 @@ impl WalkingLaw {
     /// the largest support radius.
     pub fn reach(&self, speed: f64, support: f64) -> f64 {
         let view = self.view(support);
-        let length = view.length + view.time * speed;
+        let longest = self.headings().map_or(1.0, |law| law.gap.longest());
+        let length = view.length + (view.time * longest + view.more_time) * speed;
         length.hypot(view.aside + view.spread * length)
     }
 
@@ -179,11 +154,12 @@ impl WalkingLaw {
         decided: &mut Decided,
     ) {
         let mut runs = Vec::new();
-        let view = match self {
-            Self::Headings(law) if !due.meets => law.view_of_one_way(),
-            _ => self.view(frame.neighbors.support()),
+        let (wide, narrow) = match self {
+            Self::Headings(law) if due.meets => (law.view(), law.headway.view()),
+            Self::Headings(law) => (law.view_of_one_way(), law.headway.view()),
+            _ => (View::default(), self.view(frame.neighbors.support())),
         };
-        let positions = &frame.agents.position;
+        let chooses = self.headings().is_some() && Headings::chooses(frame.clock);
         let all = (self.headings()).map_or([Vector::zeros(); COUNT], Headings::all_turned);
         for (agents, _) in frame.neighbors.near().block(b).clusters() {
             let own = agents.start % BLOCK..agents.start % BLOCK + agents.len();
@@ -191,35 +167,39 @@ impl WalkingLaw {
                 continue;
             }
             let wishes = &frame.fields.preferred_velocity[agents.clone()];
-            let walkers = Walkers::<R, S>::new(simd, agents.start, wishes, &due.gap[own.clone()]);
-            let way = walkers.area(simd, bodies, &view);
-            let area = way.map(|way| positions[agents.start] + way);
-            frame.neighbors.inside(area, positions, &mut runs);
-            let lost = match self {
-                Self::Headway(law) => law.lost_speeds(simd, bodies, &walkers, &runs),
-                Self::DensityAhead(law) => law.lost_speeds(simd, bodies, &walkers, &runs),
-                Self::Drag(_) => continue,
-                Self::Headings(law) => {
-                    let rooms = law.rooms(simd, bodies, (&walkers, &all), &runs);
+            let mut walkers =
+                Walkers::<R, S>::new(simd, agents.start, wishes, &due.gap[own.clone()]);
+            if let Self::Headings(law) = self {
+                let heading = &mut decided.heading[own.clone()];
+                if chooses {
+                    walkers.look(simd, bodies, &wide, (frame, &mut runs));
+                    let rooms = match due.meets {
+                        true => law.rooms::<R, S, true>(simd, bodies, (&walkers, &all), &runs),
+                        false => law.rooms::<R, S, false>(simd, bodies, (&walkers, &all), &runs),
+                    };
                     let rooms = rooms.map(
                         #[inline(always)]
                         |room| store::<R, S>(room),
                     );
-                    let mut turned = [Vector::new(1.0, 0.0); LANES];
-                    for (k, i) in agents.clone().enumerate() {
-                        let (rooms, place) = (rooms.map(|room| room[k]), own.start + k);
-                        if due.is_due[place] {
-                            let chosen = law.chosen(frame, i, (due.gap[place], &all), rooms);
-                            turned[k] = all[chosen];
-                            decided.heading[place] = (chosen as i32 - STRAIGHT as i32) as i8;
-                        }
+                    for (k, place) in own.clone().enumerate().filter(|&(_, i)| due.is_due[i]) {
+                        let (i, rooms) = (agents.start + k, rooms.map(|room| room[k]));
+                        let chosen = law.chosen(frame, i, (due.gap[place], &all), rooms);
+                        heading[k] = (chosen as i32 - STRAIGHT as i32) as i8;
                     }
-                    let walkers = walkers.turned(simd, &turned);
-                    let way = walkers.area(simd, bodies, &law.lane());
-                    let area = way.map(|way| positions[agents.start] + way);
-                    frame.neighbors.inside(area, positions, &mut runs);
-                    law.headway.lost_speeds(simd, bodies, &walkers, &runs)
                 }
+                let mut turned = [Vector::new(1.0, 0.0); LANES];
+                for (turned, &held) in turned.iter_mut().zip(&*heading) {
+                    *turned = all[(STRAIGHT as i32 + i32::from(held)) as usize];
+                }
+                walkers = walkers.turned(simd, &turned);
+            }
+            walkers.look(simd, bodies, &narrow, (frame, &mut runs));
+            let lost = match self {
+                Self::Headway(law) | Self::Headings(Headings { headway: law, .. }) => {
+                    law.lost_speeds(simd, bodies, &walkers, &runs)
+                }
+                Self::DensityAhead(law) => law.lost_speeds(simd, bodies, &walkers, &runs),
+                Self::Drag(_) => continue,
             };
             let lost = store::<R, S>(lost);
             for (k, i) in own.enumerate().filter(|&(_, i)| due.is_due[i]) {
@@ -254,86 +234,4 @@ pub fn some_meet(wishes: &[Vector]) -> bool {
     let mean = direction(wishes.iter().map(|&wish| direction(wish)).sum());
     let strays = |wish: &Vector| wish.dot(&mean) < FRAC_1_SQRT_2 * wish.norm();
     wishes.iter().any(strays)
-}
-
-impl<R: Real, S: Simd> Walkers<R, S> {
-    #[inline(always)]
-    fn new(simd: S, start: usize, wishes: &[Vector], gaps: &[f64]) -> Self {
-        let mut wish = [[0.0; LANES]; 2];
-        for (k, of) in wishes.iter().enumerate() {
-            wish[0][k] = of.x;
-            wish[1][k] = of.y;
-        }
-        let zero = splat::<R, S>(simd, 0.0);
-        let x = lanes_from::<R, S>(simd, &wish[0]);
-        let y = lanes_from::<R, S>(simd, &wish[1]);
-        let speed = y.mul_add(y, x * x).sqrt();
-        let walks = speed.simd_gt(zero);
-        let minus_inverse = walks.select(splat::<R, S>(simd, -1.0) / speed, zero);
-        Self {
-            start,
-            backwards: [x * minus_inverse, y * minus_inverse],
-            speed,
-            gap: lanes_from::<R, S>(simd, gaps),
-        }
-    }
-
-    /// They look along other headings: turned by the angles of these unit vectors.
-    #[inline(always)]
-    fn turned(self, simd: S, by: &[Vector; LANES]) -> Self {
-        let cosine = lanes_from::<R, S>(simd, &by.map(|by| by.x));
-        let sine = lanes_from::<R, S>(simd, &by.map(|by| by.y));
-        let [x, y] = self.backwards;
-        Self {
-            backwards: [x * cosine - y * sine, y * cosine + x * sine],
-            ..self
-        }
-    }
-
-    /// The lower left and the upper right corner of a rectangle with all places that they look at, meters from the
-    /// first of them.
-    #[inline(always)]
-    fn area(&self, simd: S, bodies: &Bodies<R>, view: &View) -> [Vector; 2] {
-        let [back_x, back_y] = self.backwards;
-        let [low_x, high_x] = self.span(simd, (&bodies.x, bodies.unit), view, [back_x, back_y]);
-        let [low_y, high_y] = self.span(simd, (&bodies.y, bodies.unit), view, [back_y, back_x]);
-        [Vector::new(low_x, low_y), Vector::new(high_x, high_y)]
-    }
-
-    /// The rectangle along one axis; the vectors backwards have these components along it and across.
-    #[inline(always)]
-    fn span(
-        &self,
-        simd: S,
-        (places, unit): (&[R::Coordinate], f64),
-        view: &View,
-        [backwards, across]: [Lanes<R, S>; 2],
-    ) -> [f64; 2] {
-        let zero = splat::<R, S>(simd, 0.0);
-        let at = R::places(simd, &places[self.start..]);
-        let at = R::differences(simd, at, places[self.start]) * splat::<R, S>(simd, unit);
-        let (time, length) = (
-            splat::<R, S>(simd, -view.time),
-            splat::<R, S>(simd, -view.length),
-        );
-        let reach = self.speed.mul_add(time, length);
-        let front = backwards * reach;
-        let (aside, spread) = (
-            splat::<R, S>(simd, view.aside),
-            splat::<R, S>(simd, -view.spread),
-        );
-        let side = across.abs() * reach.mul_add(spread, aside);
-        let walks = self.speed.simd_gt(zero);
-        let low = walks.select(at + front.min(zero) - side, zero);
-        let high = walks.select(at + front.max(zero) + side, zero);
-        let (low, high) = (store::<R, S>(low), store::<R, S>(high));
-        [fold(low, f64::min), fold(high, f64::max)]
-    }
-}
-
-/// The least or the greatest of eight numbers.
-#[inline(always)]
-fn fold(numbers: [f64; LANES], of_two: impl Fn(f64, f64) -> f64) -> f64 {
-    let four = [0, 1, 2, 3].map(|k| of_two(numbers[k], numbers[k + 4]));
-    of_two(of_two(four[0], four[1]), of_two(four[2], four[3]))
 }

@@ -4,15 +4,12 @@ use std::ops::Range;
 
 use super::room::{before_wall, nearest_wall};
 use super::{COUNT, Headings, STRAIGHT, Seen};
-use crate::engine::forces::walking::{FADE, Walkers, headway};
+use crate::engine::forces::walking::{FADE, Motions, ROUNDING, Walkers, headway};
 use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
-
-/// More than the rounding error of d² in single precision, relative to it.
-const ROUNDING: f64 = 1.0 + 1e-5;
+use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat};
 
 /// The headings between which an agent chooses.
 #[derive(Debug, Clone, PartialEq)]
@@ -142,7 +139,7 @@ impl Headings {
 
     /// S_k, m/s, before agents, for eight agents i. `runs` contain all agents in view, and some out of view.
     #[inline(always)]
-    pub(in crate::engine::forces::walking) fn rooms<R: Real, S: Simd>(
+    pub(in crate::engine::forces::walking) fn rooms<R: Real, S: Simd, const MEETS: bool>(
         &self,
         simd: S,
         bodies: &Bodies<R>,
@@ -158,9 +155,8 @@ impl Headings {
         let velocity_x = load(simd, &bodies.velocity_x, walkers.start);
         let velocity_y = load(simd, &bodies.velocity_y, walkers.start);
         let fade = FADE * self.heading_half_width;
-        let mut sum = Rooms {
-            velocity: [&bodies.velocity_x, &bodies.velocity_y],
-            heading: [&bodies.heading_x, &bodies.heading_y],
+        let mut sum = Rooms::<R, S, MEETS> {
+            motions: Motions::of(bodies),
             backwards: walkers.backwards,
             unit: splat::<R, S>(simd, bodies.unit),
             own: [
@@ -212,11 +208,8 @@ pub fn rotated(v: Vector, by: Vector) -> Vector {
 }
 
 /// The least d² along each heading, for eight agents i.
-struct Rooms<'a, R: Real, S: Simd> {
-    /// The velocities of all agents, m/s.
-    velocity: [&'a [R]; 2],
-    /// ê_j of all agents.
-    heading: [&'a [R]; 2],
+struct Rooms<'a, R: Real, S: Simd, const MEETS: bool> {
+    motions: Motions<'a, R>,
     /// −ê_i.
     backwards: [Lanes<R, S>; 2],
     /// Meters per coordinate unit.
@@ -245,34 +238,29 @@ struct Rooms<'a, R: Real, S: Simd> {
     squared: [Lanes<R, S>; COUNT],
 }
 
-impl<'a, R: Real, S: Simd> PairSum<R, S> for Rooms<'a, R, S> {
-    type Run = [&'a [R]; 4];
+impl<'a, R: Real, S: Simd, const MEETS: bool> PairSum<R, S> for Rooms<'a, R, S, MEETS> {
+    type Run = Motions<'a, R>;
 
     #[inline(always)]
-    fn run(&self, run: Range<usize>) -> [&'a [R]; 4] {
-        let [[v_x, v_y], [e_x, e_y]] = [self.velocity, self.heading];
-        [v_x, v_y, e_x, e_y].map(|column| &column[run.clone()])
+    fn run(&self, run: Range<usize>) -> Motions<'a, R> {
+        self.motions.run(run)
     }
 
     #[inline(always)]
-    fn add(
-        &mut self,
-        simd: S,
-        [dx, dy]: [Lanes<R, S>; 2],
-        [velocity_x, velocity_y, heading_x, heading_y]: [&'a [R]; 4],
-        j: usize,
-    ) {
+    fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], motions: Motions<'a, R>, j: usize) {
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
         let [x, y] = self.backwards;
         let (dx, dy) = (dx * self.unit, dy * self.unit);
-        let e_x = spread::<R, S>(simd, heading_x[j]);
-        let e_y = spread::<R, S>(simd, heading_y[j]);
-        let against = e_y.mul_add(y, e_x * x).max(zero);
-        let oncoming = (against * splat::<R, S>(simd, headway::AGAINST)).min(one);
         // d² is at least the squared distance, unless agents come toward each other: most agents of a run are farther
         // away from all eight than the rooms that these have left.
-        let sight = oncoming.mul_add(self.farther, self.far);
-        let sight = oncoming.simd_gt(zero).select(sight * sight, self.widest);
+        let (mut oncoming, mut sight) = (zero, self.widest);
+        if MEETS {
+            let [e_x, e_y] = motions.heading(simd, j);
+            let against = e_y.mul_add(y, e_x * x).max(zero);
+            oncoming = (against * splat::<R, S>(simd, headway::AGAINST)).min(one);
+            let farther = oncoming.mul_add(self.farther, self.far);
+            sight = oncoming.simd_gt(zero).select(farther * farther, sight);
+        }
         let squared = dy.mul_add(dy, dx * dx);
         if squared.simd_lt(sight).all_false() {
             return;
@@ -280,8 +268,7 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for Rooms<'a, R, S> {
         // Where agent j is, and how it moves, along the way and to its left.
         let ahead = dy.mul_add(y, dx * x);
         let left = dy * x - dx * y;
-        let v_x = spread::<R, S>(simd, velocity_x[j]);
-        let v_y = spread::<R, S>(simd, velocity_y[j]);
+        let [v_x, v_y] = motions.velocity(simd, j);
         let faster = self.own[0] - v_y.mul_add(y, v_x * x);
         let leftward = v_x * y - v_y * x - self.own[1];
         let [time, evasion] = self.times;
@@ -292,8 +279,13 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for Rooms<'a, R, S> {
             let across = left * cosine - ahead * sine;
             let away = leftward.mul_add(sine, faster * cosine);
             let expected = away.max(zero).mul_add(time, along);
-            let closing = away.min(zero).max(self.fastest);
-            let expected = closing.mul_add(evasion, expected).max(zero);
+            let expected = match MEETS {
+                true => {
+                    let closing = away.min(zero).max(self.fastest);
+                    closing.mul_add(evasion, expected).max(zero)
+                }
+                false => expected,
+            };
             let aside = across.abs().mul_add(self.per_fade, self.edge).max(zero);
             let behind = (one - along * self.per_fade).max(zero);
             let inside = across.mul_add(across, expected * expected);

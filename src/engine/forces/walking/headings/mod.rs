@@ -10,8 +10,8 @@
 //! in m/s, with φ_i the angle of the heading that the agent follows and p [`heading_persistence`]. S_k = max(0, (d_k −
 //! ℓ)/T) is the speed for which there is room: d_k is the distance to the nearest agent in a lane along the heading, or
 //! to the nearest wall, at most R + [`look_ahead`], with R = ℓ + T s_i. The agent takes the heading with the greatest
-//! utility, in coarse frames, and walks along it at the speed of the [`Headway`] law, whose lane is narrower: it looks
-//! for room beside others, and passes them closely.
+//! utility, every [`CHOICE_TIME`], and walks along it at the speed of the [`Headway`] law, whose lane is narrower: it
+//! looks for room beside others, and passes them closely.
 //!
 //! [`heading_persistence`]: Headings::heading_persistence
 //! [`look_ahead`]: Headings::look_ahead
@@ -29,12 +29,16 @@ use std::f64::consts::TAU;
 use schemars::JsonSchema;
 
 use super::{FADE, Headway, View};
+use crate::engine::clock::Clock;
 use crate::engine::forces::rates::Rates;
 use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, unit_vector};
 
 /// The number of headings.
 pub const COUNT: usize = 7;
+
+/// The time between two choices, seconds, to the nearest number of coarse steps.
+pub const CHOICE_TIME: f64 = 0.2;
 
 /// The heading straight along the way.
 pub const STRAIGHT: usize = COUNT / 2;
@@ -170,32 +174,28 @@ impl Headings {
         room * turned[k].x - self.heading_persistence * turn
     }
 
-    /// The rectangle along the chosen heading.
-    pub(super) fn lane(&self) -> View {
-        let view = self.headway.view();
-        View {
-            time: view.time * self.gap.longest(),
-            ..view
-        }
+    /// Whether agents choose headings in the current frame: about every [`CHOICE_TIME`].
+    pub(super) fn chooses(clock: &Clock) -> bool {
+        let every = (CHOICE_TIME / clock.coarse_step()).round().max(1.0);
+        clock.is_coarse() && clock.coarse_frame().is_multiple_of(every as u64)
     }
 
     /// The rectangle around an agent in which others count.
     pub(super) fn view(&self) -> View {
-        let view = self.view_of_one_way();
         View {
-            time: view.time + 2.0 * self.evasion_time,
-            ..view
+            more_time: 2.0 * self.evasion_time,
+            ..self.view_of_one_way()
         }
     }
 
     /// The rectangle around an agent in which others count if no agent wants to walk against another one.
     pub(super) fn view_of_one_way(&self) -> View {
-        let lane = self.lane();
+        let lane = self.headway.view();
         View {
             length: lane.length + self.look_ahead,
-            time: lane.time,
             aside: (1.0 + FADE) * self.heading_half_width,
             spread: self.heading_angle.to_radians().sin(),
+            ..lane
         }
     }
 
