@@ -132,6 +132,30 @@ fn agents_keep_the_time_gap_along_their_heading() {
 }
 
 #[test]
+fn agents_keep_their_headings_between_choices() {
+    // Fine steps of 0.02 s and coarse steps of 0.1 s: a choice every ten frames.
+    let mut simulation = evaluated(crowd(WalkingLawKind::Headings, 1));
+    let held = |simulation: &Simulation| {
+        let agents = simulation.frame().agents;
+        let mut held: Vec<_> = agents.id.iter().copied().zip(agents.heading.clone()).collect();
+        held.sort_unstable();
+        held
+    };
+    let (mut last, mut changes) = (held(&simulation), 0);
+    for frame in 1..=50 {
+        simulation.integrate().unwrap();
+        simulation.evaluate().unwrap();
+        let now = held(&simulation);
+        match frame % 10 {
+            0 => changes += usize::from(now != last),
+            _ => assert_eq!(now, last, "frame {frame}"),
+        }
+        last = now;
+    }
+    assert_eq!(changes, 5);
+}
+
+#[test]
 fn a_fan_shows_what_the_agent_has_chosen() {
     let law = law();
     let mut ends = 0;

@@ -23,6 +23,10 @@ fn a_value_passes_within_the_tolerance_of_the_measured_one() {
     assert!(!judgment(None).is_passed());
     assert!((judgment(Some(3.0)).error().unwrap() - 0.5).abs() < 1e-12);
     assert_eq!(expected.to_string(), "2 ± 6 %");
+    let deviation = |value| judgment(Some(value)).deviation().unwrap();
+    assert!((deviation(2.12) - 1.0).abs() < 1e-12 && deviation(2.0) == 0.0);
+    assert!((deviation(4.0) + deviation(1.0)).abs() < 1e-12);
+    assert_eq!(judgment(None).deviation(), None);
 }
 
 #[test]
@@ -41,6 +45,10 @@ fn validate_judges_means_over_seeds() {
         line.split(',').nth(4).unwrap().parse().unwrap()
     };
     let one = flow(&csv("1"));
+    let picture = fs::read_to_string(out.join("deviations.svg")).unwrap();
+    for value in ["door: flow", "door: density", "door: speed"] {
+        assert!(picture.contains(value), "{value}");
+    }
     let both = csv("2");
     assert_eq!(both.matches("flow").count(), 1, "{both}");
     let cell = |seed: &str| {

@@ -49,7 +49,7 @@ const QUICK: usize = 4;
 const QUICK_STRETCH: (f64, f64) = (0.1, 0.2);
 
 /// The walking laws of the hall.
-const LAWS: [&str; 4] = ["none", "headway", "density-ahead", "drag"];
+const LAWS: [&str; 5] = ["none", "headway", "headings", "density-ahead", "drag"];
 
 /// The stretches of a plan: all, or the first if the plan is quick.
 pub fn busiest(plan: &Plan) -> &'static [Stretch] {

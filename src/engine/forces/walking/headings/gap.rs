@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 
 /// Parameters of the factor of T.
 ///
-/// Hurried people and people in dense crowds follow each other more closely; who does both, as closely as the stronger of
-/// the two asks. Where the way becomes narrower, gaps are longer.
+/// Hurried people and people in dense crowds follow each other more closely. Calm people keep longer gaps where the way
+/// becomes narrower.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
 #[schemars(default)]
 pub struct Gap {
@@ -37,13 +37,13 @@ impl Gap {
     /// The factor of T of an agent with this motivation, 0 to 1, at this density, P/m². `narrowing` has the distance to
     /// the next narrowing, meters, and how much it counts, from 0 to 1.
     pub fn factor(&self, motivation: f64, density: f64, narrowing: Option<[f64; 2]>) -> f64 {
-        let press = self.press_share * (density - self.press_density).clamp(0.0, 1.0);
-        let hurry = 1.0 - press.max(self.hurry_share * motivation);
+        let hurry = 1.0 - self.hurry_share * motivation;
+        let press = 1.0 - self.press_share * (density - self.press_density).clamp(0.0, 1.0);
         let narrow = narrowing.map_or(1.0, |[distance, counts]| {
             let near = distance / self.narrowing_range;
             1.0 + self.narrowing_share * counts * (-near * near).exp()
         });
-        hurry * narrow
+        hurry * press * narrow
     }
 
     /// Narrowings farther away than this do not count, meters.
@@ -58,6 +58,6 @@ impl Gap {
 
     /// The least factor.
     pub fn shortest(&self) -> f64 {
-        1.0 - self.hurry_share.max(self.press_share)
+        (1.0 - self.hurry_share) * (1.0 - self.press_share)
     }
 }
