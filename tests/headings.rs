@@ -137,7 +137,12 @@ fn agents_keep_their_headings_between_choices() {
     let mut simulation = evaluated(crowd(WalkingLawKind::Headings, 1));
     let held = |simulation: &Simulation| {
         let agents = simulation.frame().agents;
-        let mut held: Vec<_> = agents.id.iter().copied().zip(agents.heading.clone()).collect();
+        let mut held: Vec<_> = agents
+            .id
+            .iter()
+            .copied()
+            .zip(agents.heading.clone())
+            .collect();
         held.sort_unstable();
         held
     };
