@@ -56,6 +56,7 @@ mod passages;
 mod periodic;
 mod periodic_scenarios;
 mod precision;
+mod push;
 mod queues;
 mod reference_states;
 mod resumed;

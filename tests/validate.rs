@@ -131,3 +131,58 @@ fn scenes_with_data_are_compared_with_the_data_and_skipped_without() {
         &["--data", "nowhere", "give the folder"],
     );
 }
+
+/// Five people in a row, as in the files of the pushes: the first one is at `from`, they look against y, and 0.4 s after
+/// the first frame they walk at 0.5 m/s for 1 s, each 0.16 s after the one behind.
+fn file_of_a_row([x, from]: [f64; 2]) -> String {
+    let mut text = "id,frame,x,y\n".to_owned();
+    for person in 0..5 {
+        for frame in 0..=100 {
+            let walked = f64::from(frame) / 25.0 - 0.4 - 0.16 * f64::from(person);
+            let y = from - 0.4 * f64::from(person) - 0.5 * walked.clamp(0.0, 1.0);
+            text += &format!("{person},{frame},{x},{y}\n");
+        }
+    }
+    text
+}
+
+#[test]
+fn pushes_need_both_files_and_are_compared_with_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("data");
+    fs::create_dir(&data).unwrap();
+    let out = folder.path().join("v");
+    let report = || {
+        fs::remove_dir_all(&out).ok();
+        let mut typed = vec!["validate", "data-push", "data-push-to-wall"];
+        typed.extend(["--profile", "sph"]);
+        typed.extend(["--out", text(&out), "--data", text(&data)]);
+        let output = run(&typed);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        fs::read_to_string(out.join("validation.md")).unwrap()
+    };
+    fs::write(data.join("push_tue_15.csv"), file_of_a_row([0.8, 3.37])).unwrap();
+    let alone = report();
+    assert!(alone.contains("Skipped, for want of data: 2."), "{alone}");
+    assert!(alone.contains("has no push_tue_15.txt"), "{alone}");
+
+    fs::write(
+        data.join("push_tue_15.txt"),
+        "TimeS Force\n0 0\n0.4 20\n0.6 0\n",
+    )
+    .unwrap();
+    fs::write(data.join("push_wed_03.csv"), file_of_a_row([-0.1, -1.9])).unwrap();
+    fs::write(data.join("push_wed_03.txt"), "0 0\n0.4 20\n0.6 0\n").unwrap();
+    let both = report();
+    assert!(!both.contains("Skipped"), "{both}");
+    // 0.4 m per 0.16 s, and four people behind the first one who walk at 0.5 m/s at the same time.
+    for expected in [
+        "front, from six speeds [m/s] | 2.5 ± 20 %",
+        "front, from breaks [m/s] | 2.5 ± 20 %",
+        "speeds passed on [m/s] | 2 ± 30 %",
+        "top speed of person 5 [m/s] | 0.5 ± 30 %",
+        "reach of person 1 [m] | 0.5 ± 30 %",
+    ] {
+        assert_eq!(both.matches(expected).count(), 2, "{expected}: {both}");
+    }
+}

@@ -9,6 +9,7 @@ pub mod goal;
 pub mod near;
 pub mod own;
 pub mod pressure;
+pub mod push;
 pub mod rates;
 pub mod rvo;
 pub mod social;

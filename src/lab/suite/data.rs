@@ -5,8 +5,8 @@ use crate::runs::case::Case;
 use crate::runs::summary::Summary;
 use crate::scenario::measurements::Measurement;
 
-/// The measurements of a scenario's lines for the people of the data from which it begins, from its start on. People
-/// are measured as in a run, at their positions in its frames.
+/// The measurements of a scenario's lines and pushes for the people of the data from which it begins, from its start
+/// on. People are measured as in a run, at their positions in its frames.
 pub(super) fn measured(label: &str, case: &Case) -> Result<Summary, LabError> {
     let failed = |error| LabError::of(label, error);
     let draft = case.draft().map_err(failed)?;
@@ -20,12 +20,17 @@ pub(super) fn measured(label: &str, case: &Case) -> Result<Summary, LabError> {
         return Ok(summary);
     };
     for measurement in &scenario.measurements {
-        if let Measurement::LineFlow(line) = measurement {
-            let (values, passages) = line.of_tracks(&tracks, at, &scenario.scene);
-            let number = |(name, value): (String, Option<f64>)| (name, value.into());
-            summary.metrics.extend(values.into_iter().map(number));
-            summary.data.extend([passages]);
-        }
+        let (values, data) = match measurement {
+            Measurement::LineFlow(line) => {
+                let (values, passages) = line.of_tracks(&tracks, at, &scenario.scene);
+                (values, Some(passages))
+            }
+            Measurement::Push(push) => (push.of_tracks(&tracks, at, &scenario.scene), None),
+            _ => continue,
+        };
+        let number = |(name, value): (String, Option<f64>)| (name, value.into());
+        summary.metrics.extend(values.into_iter().map(number));
+        summary.data.extend(data);
     }
     Ok(summary)
 }

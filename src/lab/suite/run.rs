@@ -1,7 +1,7 @@
 //! The runs of a suite, judged.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::check::{Judgment, Runs};
 use super::file::Suite;
@@ -46,8 +46,8 @@ pub struct Planned<'a> {
     cases: Vec<&'a Case>,
     /// The cases whose data are missing.
     pub skipped: Vec<Skipped<'a>>,
-    /// The files of the data by the labels of their runs.
-    data: BTreeMap<String, PathBuf>,
+    /// The labels of the runs that begin from data.
+    data: BTreeSet<String>,
     /// The study.
     pub study: Study,
 }
@@ -68,7 +68,8 @@ impl Suite {
             let files = self.files_of(case).map(|data| {
                 let path = chosen.data.map(|folder| folder.join(&data.file));
                 let path = path.filter(|path| path.is_file());
-                path.map(|path| (data.run.clone(), path)).ok_or(data)
+                let key = (data.run.clone(), data.setting.clone());
+                path.map(|path| (key, path)).ok_or(data)
             });
             match files.collect::<Result<Vec<_>, _>>() {
                 Ok(files) => {
@@ -96,7 +97,7 @@ impl Suite {
             suite: self,
             cases,
             skipped,
-            data: changes.data,
+            data: changes.data.into_keys().map(|(run, _)| run).collect(),
             study,
         })
     }
@@ -121,7 +122,7 @@ impl<'a> Planned<'a> {
         let results: Vec<RunResult> = results.collect::<Result<_, _>>()?;
         let cells: Vec<&Cell> = self.study.cells.iter().filter(wanted).collect();
         let mut measured = Vec::new();
-        for run in self.data.into_keys() {
+        for run in self.data {
             if let Some(cell) = cells.iter().find(|cell| label(cell) == run) {
                 let data = data::measured(&run, &cell.case)?;
                 measured.push((run, data));

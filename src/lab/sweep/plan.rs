@@ -43,7 +43,8 @@ pub(super) struct File {
     _cases: IgnoredAny,
 }
 
-/// A file of trajectories that is not part of the program, from which the scenarios of a run begin.
+/// A file that is not part of the program and that the scenarios of a run read: most often the trajectories from which
+/// they begin.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DataFile {
@@ -53,6 +54,13 @@ pub struct DataFile {
     pub file: String,
     /// Where it can be had.
     pub source: String,
+    /// The setting that names it.
+    #[serde(default = "trajectory")]
+    pub setting: String,
+}
+
+fn trajectory() -> String {
+    "from.trajectory".to_owned()
 }
 
 /// What a command changes in a study's file.
@@ -62,8 +70,8 @@ pub struct Changes<'a> {
     pub profiles: &'a [String],
     /// The number of seeds in place of the file's.
     pub seeds: Option<u64>,
-    /// The paths of data files by the labels of their runs.
-    pub data: BTreeMap<String, PathBuf>,
+    /// The paths of data files by the labels of their runs and their settings.
+    pub data: BTreeMap<(String, String), PathBuf>,
 }
 
 /// Checks the names and types of a study's keys.
@@ -94,14 +102,16 @@ impl File {
             list.retain_mut(|Entries(entries)| {
                 let label = entries.iter().find(|(key, _)| key == LABEL);
                 let label = label.and_then(|(_, label)| label.as_str());
-                let Some(run) = runs.iter().find(|data| Some(data.run.as_str()) == label) else {
-                    return true;
-                };
-                let path = changes.data.get(&run.run);
-                let path =
-                    path.map(|path| ("from.trajectory".to_owned(), path.to_string_lossy().into()));
-                let is_there = path.is_some();
-                entries.extend(path);
+                let own = runs.iter().filter(|data| Some(data.run.as_str()) == label);
+                let paths = own.map(|data| {
+                    let path = changes
+                        .data
+                        .get(&(data.run.clone(), data.setting.clone()))?;
+                    Some((data.setting.clone(), path.to_string_lossy().into()))
+                });
+                let paths: Option<Vec<(String, Value)>> = paths.collect();
+                let is_there = paths.is_some();
+                entries.extend(paths.into_iter().flatten());
                 is_there
             })
         });

@@ -32,7 +32,8 @@ impl Population<'_> {
         let mut faster = 0;
         for person in &there {
             let id = self.scene.agents.len() as u32;
-            let slowed = self.scene.slowed(agent(person), id);
+            let mut slowed = self.scene.slowed(agent(person), id);
+            slowed.mean_density = given.mean_density;
             faster += usize::from(slowed.velocity != person.velocity());
             self.scene.agents.push(slowed);
         }

@@ -16,6 +16,7 @@ use crate::engine::neighbors::ListPolicy;
 use crate::engine::pairs::Precision;
 use crate::engine::scene::Scene;
 use crate::scenario::keys::catalog::Parameters;
+use crate::scenario::keys::curve::Curve;
 use crate::scenario::keys::from::FromData;
 use crate::scenario::keys::goals::{Aim, WayFinding};
 use crate::scenario::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE, LONGEST_TIME, STRONGEST};
@@ -26,7 +27,7 @@ use crate::scenario::keys::periodic::Periodic;
 use crate::scenario::keys::places::{Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use crate::scenario::keys::preset::Preset;
 use crate::scenario::keys::profiles::ProfileChoice;
-use crate::scenario::keys::shapes::{Corners, Label, Outline, Ring};
+use crate::scenario::keys::shapes::{Corners, Label, Outline, Point, Ring};
 use crate::scenario::measurements::Measurement;
 
 /// A scenario for `sandbox run`.
@@ -196,6 +197,11 @@ pub struct Event {
     /// Whether they feel no SPH forces.
     #[serde(default)]
     pub ignore_sph: bool,
+    /// Of a push: a force on these agents from outside, over their mass: seconds since `at_secs` and m/s², in straight
+    /// lines; or the name of a text file with two such columns, relative to this file's folder. Default: none.
+    pub acceleration: Option<Curve>,
+    /// The direction of `acceleration`. Default: along x.
+    pub direction: Option<Point>,
 }
 
 /// Conditions for stopping early.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::math::Vector;
 use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::{FARTHEST, LONGEST_TIME};
+use crate::scenario::keys::limits::{FARTHEST, HIGHEST_DENSITY, LONGEST_TIME};
 use crate::scenario::keys::people::People;
 use crate::scenario::trajectories::Unit;
 
@@ -37,6 +37,10 @@ pub struct FromData {
     /// With `trajectory`: its frames per second. Default: as the file says.
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub fps: Option<f64>,
+    /// ρ̂ of those who are there at the start, P/m². Higher than the densities around them: they feel no pressure until
+    /// it has fallen to these within some tenths of a second. Default: the density by the other agents.
+    #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
+    pub mean_density: Option<f64>,
     /// Instead of `trajectory`: the people.
     pub people: Option<Vec<Person>>,
     #[serde(flatten)]

@@ -3,6 +3,7 @@
 
 pub mod calibrated;
 pub mod catalog;
+pub mod curve;
 pub mod distribution;
 pub mod from;
 pub mod goals;

@@ -23,6 +23,7 @@ mod metrics;
 mod observed;
 mod oscillation;
 mod overview;
+mod push;
 mod quantity;
 mod running;
 mod service_levels;
@@ -58,6 +59,7 @@ pub use metrics::{Metric, Metrics};
 pub use observed::Observed;
 pub use oscillation::Oscillation;
 pub use overview::{GAP, HighestDensity, LongestQueue, SLOW};
+pub use push::Push;
 pub use quantity::Quantity;
 pub use service_levels::ServiceLevels;
 pub use snapshot::{Snapshot, SnapshotAt};
@@ -166,6 +168,8 @@ pub enum Measurement {
     Wave(Wave),
     /// How far and how fast a start or a push runs through a crowd.
     Front(Front),
+    /// How fast, how far and how strongly a push runs through a row of people.
+    Push(Push),
     /// Spectrum of the mean velocities in boxes: frequency and spin of collective oscillations.
     Oscillation(Oscillation),
     /// Contacts between agents at one time.
@@ -211,6 +215,7 @@ impl Measurement {
             Self::Snapshot(keys) => started(keys),
             Self::Wave(keys) => started(keys),
             Self::Front(keys) => started(keys),
+            Self::Push(keys) => started(keys),
             Self::Oscillation(keys) => started(keys),
             Self::Contacts(keys) => started(keys),
             Self::Jitter(keys) => started(keys),

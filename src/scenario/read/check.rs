@@ -2,11 +2,14 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 use serde::Deserialize;
 use serde_json::Value;
 
+use crate::engine::forces::push::PushForce;
 use crate::engine::geometry::Polygon;
+use crate::engine::math::{Vector, direction};
 use crate::engine::period::Period;
 use crate::engine::profile::Override;
 use crate::engine::scene::{Push, Scene};
@@ -25,7 +28,7 @@ use crate::scenario::keys::profiles::{ProfileChoice, ProfileName};
 use crate::scenario::keys::shapes::region;
 use crate::scenario::read::draft::{Draft, Inputs};
 use crate::scenario::read::scenario::Scenario;
-use crate::scenario::read::{data, late, plans, preset};
+use crate::scenario::read::{curves, data, late, plans, preset};
 use crate::scenario::trajectories::Tracks;
 use crate::scenario::{file, measurements};
 
@@ -37,6 +40,7 @@ impl Draft {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut notes = Vec::new();
         let mut plans = plans::fill(&mut document, folder, &mut notes)?;
+        plans.extend(curves::fill(&mut document, folder)?);
         let mut keys = Self::check_keys(&document)?;
         plans.extend(data::fill(&mut document, &mut keys, folder, &mut notes)?);
         let need = Need::of(&keys, &numerics::first_clock(&keys), duration(&keys))?;
@@ -113,7 +117,7 @@ impl Draft {
         measurements::check(&keys.measurements, &scene.journeys.journeys)?;
         off_floor::check(keys, &scene)?;
         off_floor::check_starts(&items.origins(keys, &scene), &behind)?;
-        scene.pushes = pushes(&keys.events)?;
+        add_pushes(&mut scene, &keys.events)?;
         periodic::check(keys, &scene)?;
         scene.ways = ways::ways(items.origins(keys, &scene), &behind, &mut notes)?;
         scene.integrator = keys.integrator.for_scene(&scene);
@@ -206,7 +210,8 @@ fn max_speed_ratio(keys: &File, paper: &Scene) -> Option<f64> {
     keys.max_speed.is_none().then_some(ratio)
 }
 
-fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {
+/// Adds the pushes among the events, and their forces.
+fn add_pushes(scene: &mut Scene, events: &[file::Event]) -> Result<(), Problem> {
     if events.len() > MOST_NUMBERED {
         let reason = format!(
             "{} events; at most {MOST_NUMBERED} are allowed",
@@ -214,20 +219,24 @@ fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {
         );
         return Err(Problem::new("events", reason));
     }
-    let push = |(k, event): (usize, &file::Event)| {
+    for (k, event) in events.iter().enumerate() {
         let place = format!("events[{k}]");
         let given = (event.for_secs, event.region);
         let changes = [&event.open, &event.close, &event.release];
         let changes = changes.into_iter().flatten().count();
         let (lasting, corners) = match (given, changes) {
             ((Some(lasting), Some(corners)), 0) => (lasting, corners),
-            ((None, None), 1) => return Ok(None),
+            ((None, None), 1) => continue,
             _ => {
                 let reason = "give one of `open`, `close` and `release`, or both `for_secs` and `region` of a push";
                 return Err(Problem::new(place, reason));
             }
         };
-        Ok(Some(Push {
+        let push = scene.pushes.len() as u16; // at most MOST_NUMBERED
+        if let Some(force) = force(push, event).under(&place)? {
+            scene.own_forces.push(Arc::new(force));
+        }
+        scene.pushes.push(Push {
             region: region("region", corners).under(&place)?,
             name: event.name.clone().unwrap_or(place),
             at: event.at_secs,
@@ -237,10 +246,32 @@ fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {
                 ignore_contact: event.ignore_contact,
                 ignore_sph: event.ignore_sph,
             },
-        }))
+        });
+    }
+    Ok(())
+}
+
+/// The force of a push, if it has one.
+fn force(push: u16, event: &file::Event) -> Result<Option<PushForce>, Problem> {
+    let Some(curve) = &event.acceleration else {
+        return match event.direction {
+            Some(_) => {
+                let reason = "is for `acceleration`, which is not given; add it, or remove this";
+                Err(Problem::new("direction", reason))
+            }
+            None => Ok(None),
+        };
     };
-    let pushes = events.iter().enumerate().map(push);
-    pushes.filter_map(Result::transpose).collect()
+    let way = event.direction.map_or(Vector::x(), Vector::from);
+    if way == Vector::zeros() {
+        return Err(Problem::new("direction", "must not be [0, 0]"));
+    }
+    Ok(Some(PushForce {
+        push,
+        at: event.at_secs,
+        direction: direction(way),
+        curve: curve.points().under("acceleration")?,
+    }))
 }
 
 /// A dozen ids spread evenly over `entering` agents, or all ids if there are fewer.

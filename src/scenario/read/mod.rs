@@ -1,6 +1,7 @@
 //! The text of a file, with settings, presets and the files that it names → a checked [`Scenario`](scenario::Scenario).
 
 pub mod check;
+pub mod curves;
 pub mod data;
 pub mod document;
 pub mod draft;

@@ -1,0 +1,153 @@
+//! A push that runs through a row of people, in a run or in the data from which it begins.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Measure, Observed, is_due};
+use crate::analysis::push::Pushed;
+use crate::engine::math::{Vector, direction};
+use crate::engine::scene::Scene;
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::shapes::Point;
+use crate::scenario::trajectories::Tracks;
+
+/// The name of the values if none is given.
+const NAME: &str = "push";
+/// The most people whose values have names.
+const MOST: u32 = 100;
+
+/// A push through a row of people, who are numbered along it: the speed of the front, the momentum passed on, and the
+/// top speed and the displacement of each person.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Push {
+    /// The beginning of the names of its values. Default: `push`.
+    #[schemars(length(min = 1))]
+    name: Option<String>,
+    /// The number of people with values of their own, from the beginning of the row on.
+    #[schemars(range(min = 1, max = MOST))]
+    people: u32,
+    /// The direction of the push, along which places are measured. Default: along x.
+    #[serde(default = "along_x")]
+    direction: Point,
+    /// Time between two samples, seconds.
+    #[schemars(range(max = 1), extend("exclusiveMinimum" = 0))]
+    #[serde(default = "every")]
+    every_secs: f64,
+}
+
+fn along_x() -> Point {
+    Point([1.0, 0.0])
+}
+
+/// 25 samples per second, as many cameras take.
+fn every() -> f64 {
+    0.04
+}
+
+/// What was seen so far.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub struct Seen {
+    /// Time between two samples, seconds.
+    every: f64,
+    /// The people of the first frame, with their places along the row.
+    people: Vec<(u32, Vec<f64>)>,
+}
+
+impl Push {
+    fn name(&self) -> &str {
+        self.name.as_deref().unwrap_or(NAME)
+    }
+
+    fn way(&self) -> Vector {
+        direction(Vector::from(self.direction))
+    }
+
+    /// The values, by their names, for people in `tracks` from the time `at` in it, seconds, on: their places are taken
+    /// at the frames of a run of `scene` that begins at `at`.
+    pub fn of_tracks(&self, tracks: &Tracks, at: f64, scene: &Scene) -> Vec<(String, Option<f64>)> {
+        let clock = scene.clock;
+        let every = clock.time_at(clock.frame_at(self.every_secs).max(1));
+        let near = tracks.rounding();
+        let places = |p: usize| {
+            let [first, last] = tracks.times_of(p);
+            let samples = ((last + near - at) / every).floor().max(0.0) as usize;
+            let place = |k: usize| tracks.place_at(p, at + k as f64 * every).dot(&self.way());
+            (first <= at + near).then(|| (p as u32, (0..=samples).map(place).collect()))
+        };
+        let seen = Seen {
+            every,
+            people: (0..tracks.ids.len()).filter_map(places).collect(),
+        };
+        let names = self.names().into_iter().map(|(name, _)| name);
+        names.zip(self.results(&seen)).collect()
+    }
+
+    fn results(&self, seen: &Seen) -> Vec<Option<f64>> {
+        let people = seen.people.iter();
+        let row = people.filter_map(|(_, places)| Pushed::of(places, seen.every));
+        let mut row: Vec<Pushed> = row.collect();
+        row.sort_by(|a, b| a.place.total_cmp(&b.place));
+        let of_each = |value: fn(&Pushed) -> f64| {
+            let row = &row;
+            (0..self.people as usize).map(move |k| row.get(k).map(value))
+        };
+        let of_row = [
+            Pushed::front(&row),
+            Pushed::front_of_starts(&row),
+            Pushed::passed_on(&row),
+        ];
+        let of_people = of_each(|one| one.top_speed).chain(of_each(|one| one.reach));
+        of_row.into_iter().chain(of_people).collect()
+    }
+}
+
+impl Measure for Push {
+    type Seen = Seen;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
+
+    fn check(&self) -> Result<(), Problem> {
+        match self.way() == Vector::zeros() {
+            true => Err(Problem::new("push.direction", "must not be [0, 0]")),
+            false => Ok(()),
+        }
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let of_row = [("front", "m/s"), ("break", "m/s"), ("passed_on", "m/s")];
+        let of_row = of_row.map(|(what, unit)| (format!("{}_{what}_m_per_s", self.name()), unit));
+        let of_each = |what: &'static str, unit: &'static str, end: &'static str| {
+            let name = move |k| (format!("{}_{what}_{k}_{end}", self.name()), unit);
+            (1..=self.people).map(name)
+        };
+        let top_speeds = of_each("top_speed", "m/s", "m_per_s");
+        let of_people = top_speeds.chain(of_each("reach", "m", "m"));
+        of_row.into_iter().chain(of_people).collect()
+    }
+
+    fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
+        if !is_due(simulation, [0.0, f64::MAX], self.every_secs) {
+            return;
+        }
+        let (clock, agents) = (simulation.frame().clock, simulation.frame().agents);
+        if clock.frame() == 0 {
+            seen.every = clock.time_at(clock.frame_at(self.every_secs).max(1));
+            let there = agents.present().map(|i| (agents.id[i], Vec::new()));
+            seen.people = there.collect();
+        }
+        let way = self.way();
+        for (id, places) in &mut seen.people {
+            if let Some(i) = agents.index_of(*id) {
+                places.push(agents.position[i].dot(&way));
+            }
+        }
+    }
+
+    fn values(&self, seen: &Seen, _: &Simulation) -> Vec<Option<f64>> {
+        self.results(seen)
+    }
+}
