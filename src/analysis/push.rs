@@ -14,6 +14,8 @@ const HALF: usize = 2;
 const SUSTAINED: usize = 4;
 /// The fewest people for the speed of a front.
 const FEWEST: usize = 4;
+/// Speeds that differ by less than this part of them are equal: the top speed may last for a while.
+const ROUNDING: f64 = 1e-9;
 /// The parts of a sample to which breaks are found.
 const PARTS: usize = 10;
 
@@ -47,7 +49,9 @@ impl Pushed {
             (smooth[to] - smooth[from]) / ((to - from) as f64 * every)
         };
         let speeds: Vec<f64> = (0..=last).map(speed).collect();
-        let top = (0..=last).fold(0, |top, k| if speeds[k] > speeds[top] { k } else { top });
+        let top_speed = speeds.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let nearly = top_speed - ROUNDING * top_speed.abs();
+        let top = speeds.iter().position(|speed| *speed >= nearly)?;
         let reached = |threshold: f64| {
             let keeps = |speeds: &[f64]| speeds.iter().all(|speed| *speed >= threshold);
             let first = speeds.windows(SUSTAINED).position(keeps);
@@ -56,7 +60,7 @@ impl Pushed {
         let farthest = smooth.iter().copied().fold(smooth[0], f64::max);
         Some(Self {
             place: smooth[0],
-            top_speed: speeds[top],
+            top_speed,
             reach: farthest - smooth[0],
             reached: THRESHOLDS.map(reached),
             starts: break_of(&smooth[..=top]).map(|samples| samples * every),

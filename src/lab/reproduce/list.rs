@@ -25,6 +25,7 @@ pub const PRODUCTS: &[Product] = &[
     physics::OSCILLATIONS,
     physics::START_WAVES,
     physics::QUEUE_PUSHES,
+    physics::PHENOMENA,
 ];
 
 /// Computes the missing runs of `products` and writes the products. Returns the text about each.

@@ -5,10 +5,13 @@ mod oscillations;
 mod queue_pushes;
 mod start_waves;
 
+mod phenomena;
+
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 pub use oscillations::PRODUCT as OSCILLATIONS;
+pub use phenomena::PRODUCT as PHENOMENA;
 pub use queue_pushes::PRODUCT as QUEUE_PUSHES;
 pub use start_waves::PRODUCT as START_WAVES;
 
@@ -49,6 +52,8 @@ fn profile(row: &Combination) -> String {
         law.map(str::to_owned),
         number("headway_anticipation", "t", " s"),
         number("gas_constant", "k", ""),
+        number("support_radius", "h", " m"),
+        number("rest_density_min", "ρ⁰min", ""),
     ];
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }

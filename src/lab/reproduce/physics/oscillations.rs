@@ -13,6 +13,9 @@ const MEASURED: [f64; 2] = [0.30, 0.40];
 /// The ends of the axes: angular frequency, rad/s, and power density, m²/s² per rad/s.
 const AXES: [[f64; 2]; 2] = [[0.05, 8.0], [1e-10, 0.1]];
 
+/// The most panels side by side.
+const IN_A_ROW: usize = 3;
+
 /// The table and the spectra.
 pub const PRODUCT: Product = Product {
     name: "oscillations",
@@ -40,13 +43,22 @@ fn table(rows: &[Combination]) -> Table {
         .table()
 }
 
-/// A panel for each profile, with a line for each crowd.
 fn sheet(rows: &[Combination]) -> Sheet {
+    let panels = with_legend(spectra(rows), IN_A_ROW);
+    let title = "Mean velocity in boxes of 2 m: power by angular frequency";
+    Sheet::new(
+        title,
+        panels.len().clamp(1, IN_A_ROW),
+        [260.0, 200.0],
+        panels,
+    )
+}
+
+/// A panel for each profile, with a line for each crowd.
+pub(super) fn spectra(rows: &[Combination]) -> Vec<Panel> {
     let groups = grouped(rows, profile);
     let panels = groups.iter().map(|(name, rows)| panel(name, rows));
-    let panels = with_legend(panels.collect(), groups.len());
-    let title = "Mean velocity in boxes of 2 m: power by angular frequency";
-    Sheet::new(title, groups.len().clamp(1, 3), [260.0, 200.0], panels)
+    panels.collect()
 }
 
 fn panel(name: &str, rows: &[&Combination]) -> Panel {

@@ -6,12 +6,28 @@ use crate::analysis::sound::speed_of_fluid;
 use crate::analysis::statistics::Estimate;
 use crate::lab::gallery::{curve, points};
 use crate::lab::sweep::Combination;
-use crate::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
+use crate::output::plot::{
+    Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style, line_color,
+};
 use crate::output::table::Table;
 use crate::scenario::measurements::FrontData;
 
 /// k of the paper's profiles.
 const GAS_CONSTANT: f64 = 200.0;
+/// Two rows of five people, pushed by Feldmann and Adrian (2023): the mean distance, meters, and the speed of the front
+/// through their heads, m/s, with the uncertainty that the choice of a threshold makes (docs/questions.md).
+const MEASURED: [Point; 2] = [
+    Point {
+        x: 0.357,
+        y: 2.4,
+        error: 0.13,
+    },
+    Point {
+        x: 0.362,
+        y: 3.5,
+        error: 0.5,
+    },
+];
 /// The distances on the axis, meters.
 const DISTANCES: [f64; 2] = [0.2, 1.1];
 /// The setting with the velocity of the last person in the row.
@@ -59,25 +75,35 @@ fn table(rows: &[Combination]) -> Table {
 }
 
 fn sheet(rows: &[Combination]) -> Sheet {
-    let name = |row: &Combination| match push(row) {
-        Some(push) => format!("{}, {push} m/s", profile(row)),
-        None => profile(row),
-    };
-    let groups = grouped(rows, name);
     let people = |row: &Combination| {
         let value = reached(row)?;
         Some(Estimate { value, error: 0.0 })
     };
-    let theory = DISTANCES.map(|x| [x, speed_of_fluid(GAS_CONSTANT)]);
-    let theory = Mark::line(theory, Style::broken(GRAY, 1.0, ""));
-    let fronts = Axis::linear("front speed [m/s]", [0.0, 16.0]);
     let reach = Axis::linear("people reached", [0.0, 21.0]);
-    let title = "dashed: √(k/2), linear theory of SPH";
-    let mut fronts = panel(title, &groups, fronts, front_speed);
-    fronts.marks.push(theory);
-    let reach = panel("", &groups, reach, people).with_legend(Corner::Beside);
+    let reach = panel("", &by_push(rows), reach, people).with_legend(Corner::Beside);
     let title = "A push through a row of twenty people";
-    Sheet::new(title, 2, [220.0, 190.0], vec![fronts, reach])
+    Sheet::new(title, 2, [220.0, 190.0], vec![fronts(rows), reach])
+}
+
+/// Combinations of the same profile and push.
+fn by_push<'r, 'a>(rows: &'r [Combination<'a>]) -> Vec<(String, Vec<&'r Combination<'a>>)> {
+    grouped(rows, |row| match push(row) {
+        Some(push) => format!("{}, {push} m/s", profile(row)),
+        None => profile(row),
+    })
+}
+
+/// The speed of the front by distance, with the measured ones and the linear theory.
+pub(super) fn fronts(rows: &[Combination]) -> Panel {
+    let theory = DISTANCES.map(|x| [x, speed_of_fluid(GAS_CONSTANT)]);
+    let speeds = Axis::linear("front speed [m/s]", [0.0, 16.0]);
+    let title = "push through a row; dashed: √(k/2)";
+    let mut panel = panel(title, &by_push(rows), speeds, front_speed);
+    let theory = Mark::line(theory, Style::broken(GRAY, 1.0, ""));
+    let measured = Style::full(BLACK, 2.6, "five people, measured");
+    let measured = Mark::Points(MEASURED.to_vec(), measured);
+    panel.marks.extend([theory, measured]);
+    panel
 }
 
 /// A quantity by distance, with a line for each group.

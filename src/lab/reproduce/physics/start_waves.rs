@@ -71,7 +71,7 @@ fn sheet(rows: &[Combination]) -> Sheet {
     if let Some(first) = panels.first_mut() {
         first.legend = Some(Corner::UpperLeft);
     }
-    panels.push(speeds(&groups));
+    panels.push(fronts(rows));
     let title = "A start runs back through a waiting crowd";
     Sheet::new(title, 2, [250.0, 190.0], panels)
 }
@@ -100,7 +100,9 @@ fn times(name: &str, rows: &[&Combination]) -> Panel {
     Panel::new(name, x, y, marks)
 }
 
-fn speeds(groups: &[(String, Vec<&Combination>)]) -> Panel {
+/// The speed of the front by spacing, with the measured one and spacing over T.
+pub(super) fn fronts(rows: &[Combination]) -> Panel {
+    let groups = grouped(rows, profile);
     let mut marks = Vec::new();
     let all = groups.iter().flat_map(|(_, rows)| rows);
     if let Some(time) = all.clone().find_map(|row| headway_time(row)) {
@@ -118,5 +120,5 @@ fn speeds(groups: &[(String, Vec<&Combination>)]) -> Panel {
     }
     let x = Axis::linear("spacing [m]", [0.0, 1.2]);
     let y = Axis::linear("front speed [m/s]", [0.0, 1.6]);
-    Panel::new("speed of the front", x, y, marks).with_legend(Corner::LowerRight)
+    Panel::new("start of a waiting crowd", x, y, marks).with_legend(Corner::LowerRight)
 }

@@ -1,0 +1,35 @@
+//! All questions in one picture: people and model side by side.
+
+use super::super::product::{Needs, Product, save};
+use super::{oscillations, queue_pushes, start_waves};
+use crate::lab::error::LabError;
+use crate::lab::gallery::with_legend;
+use crate::lab::sweep::Gathered;
+use crate::output::plot::{Corner, Sheet};
+use crate::runs::store::Store;
+
+/// The picture. Its panels are those of the single questions.
+pub const PRODUCT: Product = Product {
+    name: "phenomena",
+    about: "the open questions in one picture: people and model side by side",
+    in_all: false,
+    studies: &["queue_pushes", "start_waves", "oscillations"],
+    needs: Needs::All,
+    write,
+};
+
+fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
+    let rows: Vec<_> = studies.iter().map(Gathered::combinations).collect();
+    let fronts = [
+        queue_pushes::fronts(&rows[0]).with_legend(Corner::UpperRight),
+        start_waves::fronts(&rows[1]),
+    ];
+    let spectra = with_legend(oscillations::spectra(&rows[2]), 1);
+    let panels = fronts.into_iter().chain(spectra).collect();
+    let title = "Waves in crowds: what people did (black and gray) and what the model does";
+    save(
+        &Sheet::new(title, 3, [250.0, 220.0], panels),
+        store,
+        PRODUCT.name,
+    )
+}
