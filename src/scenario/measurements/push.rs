@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Measure, Observed, is_due};
+use super::{Measure, Observed, Quantity, is_due};
 use crate::analysis::push::Pushed;
 use crate::engine::math::{Vector, direction};
 use crate::engine::scene::Scene;
@@ -80,7 +80,7 @@ impl Push {
             every,
             people: (0..tracks.ids.len()).filter_map(places).collect(),
         };
-        let names = self.names().into_iter().map(|(name, _)| name);
+        let names = self.quantities().into_iter().map(|quantity| quantity.name);
         names.zip(self.results(&seen)).collect()
     }
 
@@ -117,16 +117,33 @@ impl Measure for Push {
         }
     }
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        let of_row = [("front", "m/s"), ("break", "m/s"), ("passed_on", "m/s")];
-        let of_row = of_row.map(|(what, unit)| (format!("{}_{what}_m_per_s", self.name()), unit));
-        let of_each = |what: &'static str, unit: &'static str, end: &'static str| {
-            let name = move |k| (format!("{}_{what}_{k}_{end}", self.name()), unit);
-            (1..=self.people).map(name)
+    fn quantities(&self) -> Vec<Quantity> {
+        let of_row = [
+            (
+                "front_m_per_s",
+                "m/s",
+                "speed of the front: the median, over six speeds, of the slowness with which people reach them",
+            ),
+            (
+                "break_m_per_s",
+                "m/s",
+                "speed of the front through the times at which people start: breaks of two straight lines",
+            ),
+            (
+                "passed_on_m_per_s",
+                "m/s",
+                "largest sum of the speeds of all people but the first at one time",
+            ),
+        ];
+        let of_row = Quantity::all(self.name(), &of_row);
+        let of_each = |what: &str, [unit, end]: [&'static str; 2], meaning: &str| {
+            let name = |k| format!("{}_{what}_{k}_{end}", self.name());
+            let quantity = |k| Quantity::new(name(k), unit, &format!("{meaning} {k}"));
+            (1..=self.people).map(quantity).collect::<Vec<_>>()
         };
-        let top_speeds = of_each("top_speed", "m/s", "m_per_s");
-        let of_people = top_speeds.chain(of_each("reach", "m", "m"));
-        of_row.into_iter().chain(of_people).collect()
+        let top_speeds = of_each("top_speed", ["m/s", "m_per_s"], "top speed of person");
+        let reaches = of_each("reach", ["m", "m"], "largest displacement of person");
+        [of_row, top_speeds, reaches].concat()
     }
 
     fn observe(&self, seen: &mut Seen, simulation: &Simulation) {

@@ -5,7 +5,7 @@ use super::{oscillations, queue_pushes, start_waves};
 use crate::lab::error::LabError;
 use crate::lab::gallery::with_legend;
 use crate::lab::sweep::Gathered;
-use crate::output::plot::{Corner, Sheet};
+use crate::output::plot::Sheet;
 use crate::runs::store::Store;
 
 /// The picture. Its panels are those of the single questions.
@@ -21,7 +21,7 @@ pub const PRODUCT: Product = Product {
 fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
     let rows: Vec<_> = studies.iter().map(Gathered::combinations).collect();
     let fronts = [
-        queue_pushes::fronts(&rows[0]).with_legend(Corner::UpperRight),
+        queue_pushes::strongest(&rows[0]),
         start_waves::fronts(&rows[1]),
     ];
     let spectra = with_legend(oscillations::spectra(&rows[2]), 1);

@@ -6,9 +6,7 @@ use crate::analysis::sound::speed_of_fluid;
 use crate::analysis::statistics::Estimate;
 use crate::lab::gallery::{curve, points};
 use crate::lab::sweep::Combination;
-use crate::output::plot::{
-    Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style, line_color,
-};
+use crate::output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style};
 use crate::output::table::Table;
 use crate::scenario::measurements::FrontData;
 
@@ -80,9 +78,10 @@ fn sheet(rows: &[Combination]) -> Sheet {
         Some(Estimate { value, error: 0.0 })
     };
     let reach = Axis::linear("people reached", [0.0, 21.0]);
-    let reach = panel("", &by_push(rows), reach, people).with_legend(Corner::Beside);
+    let groups = by_push(rows);
+    let reach = panel("", &groups, reach, people).with_legend(Corner::Beside);
     let title = "A push through a row of twenty people";
-    Sheet::new(title, 2, [220.0, 190.0], vec![fronts(rows), reach])
+    Sheet::new(title, 2, [220.0, 190.0], vec![fronts(&groups), reach])
 }
 
 /// Combinations of the same profile and push.
@@ -93,12 +92,20 @@ fn by_push<'r, 'a>(rows: &'r [Combination<'a>]) -> Vec<(String, Vec<&'r Combinat
     })
 }
 
+/// The speed of the front after the strongest push.
+pub(super) fn strongest(rows: &[Combination]) -> Panel {
+    let most = rows.iter().filter_map(push).reduce(f64::max);
+    let mut groups = by_push(rows);
+    groups.retain(|(_, own)| own.first().and_then(|row| push(row)) == most);
+    fronts(&groups).with_legend(Corner::UpperRight)
+}
+
 /// The speed of the front by distance, with the measured ones and the linear theory.
-pub(super) fn fronts(rows: &[Combination]) -> Panel {
+fn fronts(groups: &[(String, Vec<&Combination>)]) -> Panel {
     let theory = DISTANCES.map(|x| [x, speed_of_fluid(GAS_CONSTANT)]);
     let speeds = Axis::linear("front speed [m/s]", [0.0, 16.0]);
     let title = "push through a row; dashed: √(k/2)";
-    let mut panel = panel(title, &by_push(rows), speeds, front_speed);
+    let mut panel = panel(title, groups, speeds, front_speed);
     let theory = Mark::line(theory, Style::broken(GRAY, 1.0, ""));
     let measured = Style::full(BLACK, 2.6, "five people, measured");
     let measured = Mark::Points(MEASURED.to_vec(), measured);
@@ -116,7 +123,7 @@ fn panel(
     let mut marks = Vec::new();
     for (k, (name, rows)) in groups.iter().enumerate() {
         let points = points(rows.iter().copied(), distance, &quantity);
-        marks.extend(curve(points, Style::full(line_color(k), 0.8, name), 2.2));
+        marks.extend(curve(points, Style::nth(k, 0.8, name), 2.2));
     }
     let x = Axis::linear("distance from person to person [m]", DISTANCES);
     Panel::new(title, x, y, marks)
