@@ -59,39 +59,38 @@ struct Virial<'a, R: Real, S: Simd> {
     sums: [Lanes<R, S>; 3],
 }
 
-/// The columns of a run of agents j.
-#[derive(Clone, Copy)]
-struct Run<'a, R> {
-    volume: &'a [R],
-    pressure: &'a [R],
-    radius: &'a [R],
-}
-
 impl<'a, R: Real, S: Simd> PairSum<R, S> for Virial<'a, R, S> {
-    type Run = Run<'a, R>;
+    /// Volumes, pressures and radii.
+    type Run = [&'a [R]; 3];
 
     #[inline(always)]
-    fn run(&self, run: Range<usize>) -> Run<'a, R> {
-        Run {
-            volume: &self.columns.volume[run.clone()],
-            pressure: &self.columns.pressure[run.clone()],
-            radius: &self.columns.bodies.contact_radius[run],
-        }
+    fn run(&self, run: Range<usize>) -> [&'a [R]; 3] {
+        let Columns {
+            volume,
+            pressure,
+            bodies,
+            ..
+        } = self.columns;
+        [volume, pressure, &bodies.contact_radius].map(|column| &column[run.clone()])
     }
 
     #[inline(always)]
-    fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], run: Run<R>, j: usize) {
+    fn add(
+        &mut self,
+        simd: S,
+        [dx, dy]: [Lanes<R, S>; 2],
+        [volume, pressure, radius]: [&'a [R]; 3],
+        j: usize,
+    ) {
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
         let tiny = splat::<R, S>(simd, R::TINY);
         let distance = dy.mul_add(dy, dx * dx).max(tiny).sqrt();
         let rest = self.minus_per_h.mul_add(distance, one).max(zero);
-        let weight = spread::<R, S>(simd, run.volume[j]) * rest;
-        let along = self
-            .pressure
-            .along(weight, rest, spread(simd, run.pressure[j]));
-        let radius_j = spread(simd, run.radius[j]);
-        let along = self.contact.added_to(simd, along, distance, radius_j);
-        let force = along / distance;
+        let weight = spread::<R, S>(simd, volume[j]) * rest;
+        let p_j = spread(simd, pressure[j]);
+        let along = self.pressure.along(weight, rest, p_j);
+        let d_j = spread(simd, radius[j]);
+        let force = self.contact.added_to(simd, along, distance, d_j) / distance;
         let (x, y) = (force * dx, force * dy);
         self.sums[0] = x.mul_add(dx, self.sums[0]);
         self.sums[1] = x.mul_add(dy, self.sums[1]);
