@@ -3,6 +3,7 @@
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 use super::condition::Condition;
 use crate::engine::agents::{Agents, NewAgent};
@@ -78,29 +79,21 @@ pub struct Law {
 }
 
 impl fmt::Display for Law {
-    /// Its name with its parameter; nothing without law.
+    /// Its name with the parameters that are given; nothing without law.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Some(kind) = self.walking_law else {
             return Ok(());
         };
-        let value = |value: Option<f64>| value.map_or("default".to_owned(), |x| x.to_string());
-        match kind {
-            WalkingLawKind::None => write!(f, "none"),
-            WalkingLawKind::Headway | WalkingLawKind::Headings => {
-                let name = if kind == WalkingLawKind::Headway {
-                    "headway"
-                } else {
-                    "headings"
-                };
-                write!(f, "{name} T={}", value(self.headway_time))?;
-                let anticipation = self.headway_anticipation;
-                anticipation.map_or(Ok(()), |time| write!(f, " t={time}"))
-            }
-            WalkingLawKind::DensityAhead => {
-                write!(f, "density-ahead γ={}", value(self.slowing_density))
-            }
-            WalkingLawKind::Drag => write!(f, "drag γ₀={}", value(self.drag_per_density)),
+        f.write_str(json!(kind).as_str().unwrap_or_default())?;
+        for (symbol, value) in [
+            ("T", self.headway_time),
+            ("t", self.headway_anticipation),
+            ("γ", self.slowing_density),
+            ("γ₀", self.drag_per_density),
+        ] {
+            value.map_or(Ok(()), |value| write!(f, " {symbol}={value}"))?;
         }
+        Ok(())
     }
 }
 
