@@ -2,9 +2,13 @@
 
 use crate::engine::math::{Vector, direction};
 use crate::engine::scene::Goal;
+use crate::scenario::build::journeys::TO_NEAREST_EXIT;
 use crate::scenario::build::people::Population;
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::keys::goals::Aim;
+use crate::scenario::keys::people::Behavior;
+use crate::scenario::keys::places::journey_named;
+use crate::scenario::keys::shapes::Point;
 
 /// Where agents walk.
 #[derive(Debug, Clone, Copy)]
@@ -13,16 +17,19 @@ pub struct Target {
     pub goal: Goal,
     /// The direction in which they walk instead, of length 1.
     pub direction: Option<Vector>,
+    /// The number of their journey.
+    pub journey: Option<u16>,
 }
 
 impl Target {
     /// To where they start.
     const START: Self = Self::to(Goal::Offset(Vector::new(0.0, 0.0)));
 
-    pub const fn to(goal: Goal) -> Self {
+    const fn to(goal: Goal) -> Self {
         Self {
             goal,
             direction: None,
+            journey: None,
         }
     }
 
@@ -43,25 +50,46 @@ impl Target {
 }
 
 impl Population<'_> {
-    /// The target of agents with the goal `given`, or with a journey, or with the scenario's goal. In a periodic scene
-    /// without goal they walk along the axis.
-    pub fn target(
-        &self,
-        given: Option<Aim>,
-        journey: Option<u16>,
-        remove_within: Option<f64>,
-    ) -> Result<Target, Problem> {
-        let target = match (given, journey) {
-            (Some(aim), _) => self.aimed(aim).under("goal")?,
+    /// The target of agents with a goal, or `offset` from where they start, or with a journey, or with the scenario's
+    /// goal. In a periodic scene without goal they walk along the axis.
+    pub fn target(&self, given: &Behavior, offset: Option<Point>) -> Result<Target, Problem> {
+        let has_goal = given.goal.is_some() || offset.is_some();
+        let journey = self.journey(given.journey.as_deref(), has_goal)?;
+        let target = match (given.goal, offset, journey) {
+            (_, Some(_), _) if self.scene.period.is_some() => {
+                let reason =
+                    "in a periodic scene agents walk in a direction, not to a point; remove it";
+                return Err(Problem::new("goal_offset", reason));
+            }
+            (Some(_), Some(_), _) => {
+                let reason = "either `goal` or `goal_offset`, not both";
+                return Err(Problem::new("goal_offset", reason));
+            }
+            (None, Some(offset), _) => Target::to(Goal::Offset(offset.into())),
+            (Some(aim), None, _) => self.aimed(aim).under("goal")?,
             // Each place of a journey becomes the goal in its turn.
-            (None, Some(_)) => Target::START,
-            (None, None) => self.default_target()?,
+            (None, None, Some(_)) => Target::START,
+            (None, None, None) => self.default_target()?,
         };
-        if target.direction.is_some() && remove_within.is_some() {
+        if target.direction.is_some() && given.remove_within.is_some() {
             let reason = "agents that walk in a direction reach no goal and never leave; remove it";
             return Err(Problem::new("remove_within", reason));
         }
-        Ok(target)
+        Ok(Target { journey, ..target })
+    }
+
+    /// The journey of agents that name `given`; `None` if they walk to a goal.
+    fn journey(&self, given: Option<&str>, has_goal: bool) -> Result<Option<u16>, Problem> {
+        let journeys = &self.scene.journeys.journeys;
+        match given {
+            Some(_) if has_goal => {
+                let reason = "either a goal or a `journey`, not both";
+                Err(Problem::new("journey", reason))
+            }
+            Some(name) => journey_named(journeys, name).under("journey").map(Some),
+            None if has_goal || self.file.goal.is_some() => Ok(None),
+            None => Ok(journey_named(journeys, TO_NEAREST_EXIT).ok()),
+        }
     }
 
     fn aimed(&self, aim: Aim) -> Result<Target, Problem> {

@@ -126,11 +126,11 @@ impl Origins<'_> {
     pub fn goal_key(&self, member: Member) -> String {
         let keys = self.keys;
         let item = self.item(member);
-        let own = |people: &People| people.goal.is_some().then_some("goal");
+        let own = |people: &People| people.behavior.goal.and(Some("goal"));
         let of_grid = |grid: &Grid| own(&grid.people).or(grid.goal_offset.and(Some("goal_offset")));
         let given = match item {
             Item::From => keys.from.as_ref().and_then(|from| own(&from.all)),
-            Item::Agent(k) => keys.agents[k].goal.and(Some("goal")),
+            Item::Agent(k) => keys.agents[k].behavior.goal.and(Some("goal")),
             Item::Grid(k) => of_grid(&keys.grids[k]),
             Item::Crowd(k) => own(&keys.crowds[k].people),
             Item::Source(k) => of_grid(&keys.sources[k]),

@@ -7,18 +7,16 @@ use crate::engine::math::Vector;
 use crate::engine::packing::Body;
 use crate::engine::placement::Grid;
 use crate::engine::profile::Blend;
-use crate::engine::scene::{Goal, Group, Region, Scene, Source};
+use crate::engine::scene::{Group, Region, Scene, Source};
 use crate::engine::traits::Traits;
 use crate::scenario::build::draws::traits;
 use crate::scenario::build::goals::Target;
-use crate::scenario::build::journeys::TO_NEAREST_EXIT;
 use crate::scenario::build::origin::{Item, Items};
 use crate::scenario::build::{overlaps, profiles};
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::file::File;
 use crate::scenario::keys::people;
-use crate::scenario::keys::people::People;
-use crate::scenario::keys::places::journey_named;
+use crate::scenario::keys::people::{Behavior, People};
 use crate::scenario::keys::profiles::ProfileChoice;
 use crate::scenario::keys::shapes::{Corners, Point, region};
 
@@ -121,17 +119,9 @@ impl<'a> Population<'a> {
             );
             return Err(Problem::new("velocity", reason));
         }
-        let journey = self.journey(agent.journey.as_deref(), agent.goal.is_some())?;
-        let target = self.target(agent.goal, journey, agent.remove_within)?;
+        let target = self.target(&agent.behavior, None)?;
         let position = agent.position.into();
-        let group = self.shared_group(Behavior {
-            journey,
-            direction: target.direction,
-            profile: agent.profile.as_ref(),
-            remove_within: agent.remove_within,
-            motivation: agent.motivation,
-            counted: agent.counted,
-        })?;
+        let group = self.shared_group(&agent.behavior, &target)?;
         self.scene.agents.push(NewAgent {
             velocity: [x, y].into(),
             radius: agent.radius,
@@ -219,59 +209,34 @@ impl<'a> Population<'a> {
         offset: Option<Point>,
     ) -> Result<(u16, Target), Problem> {
         let traits = traits(given)?;
-        let has_goal = given.goal.is_some() || offset.is_some();
-        let journey = self.journey(given.journey.as_deref(), has_goal)?;
-        let target = match (given.goal, offset) {
-            (_, Some(_)) if self.scene.period.is_some() => {
-                let reason =
-                    "in a periodic scene agents walk in a direction, not to a point; remove it";
-                return Err(Problem::new("goal_offset", reason));
-            }
-            (Some(_), Some(_)) => {
-                let reason = "either `goal` or `goal_offset`, not both";
-                return Err(Problem::new("goal_offset", reason));
-            }
-            (None, Some(offset)) => Target::to(Goal::Offset(offset.into())),
-            (goal, None) => self.target(goal, journey, given.remove_within)?,
-        };
-        let behavior = Behavior {
-            journey,
-            direction: target.direction,
-            profile: given.profile.as_ref(),
-            remove_within: given.remove_within,
-            motivation: given.motivation,
-            counted: given.counted,
-        };
-        Ok((self.group(name, behavior, traits)?, target))
-    }
-
-    /// The journey of agents that name `given`; `None` if they walk to a goal.
-    pub fn journey(&self, given: Option<&str>, has_goal: bool) -> Result<Option<u16>, Problem> {
-        let journeys = &self.scene.journeys.journeys;
-        match given {
-            Some(_) if has_goal => {
-                let reason = "either a goal or a `journey`, not both";
-                Err(Problem::new("journey", reason))
-            }
-            Some(name) => journey_named(journeys, name).under("journey").map(Some),
-            None if has_goal || self.file.goal.is_some() => Ok(None),
-            None => Ok(journey_named(journeys, TO_NEAREST_EXIT).ok()),
-        }
+        let target = self.target(&given.behavior, offset)?;
+        let group = self.group((name, traits), &given.behavior, &target)?;
+        Ok((group, target))
     }
 
     /// The group of single agents with this behavior; creates it if needed.
-    fn shared_group(&mut self, behavior: Behavior) -> Result<u16, Problem> {
-        let key = format!("{behavior:?}");
+    fn shared_group(&mut self, given: &Behavior, target: &Target) -> Result<u16, Problem> {
+        let shared = Behavior {
+            goal: None,
+            journey: None,
+            ..given.clone()
+        };
+        let key = format!("{shared:?} {:?} {:?}", target.journey, target.direction);
         if let Some(&group) = self.shared.get(&key) {
             return Ok(group);
         }
-        let group = self.group("agents", behavior, Traits::default())?;
+        let group = self.group(("agents", Traits::default()), given, target)?;
         self.shared.insert(key, group);
         Ok(group)
     }
 
     /// Adds a group.
-    fn group(&mut self, name: &str, behavior: Behavior, traits: Traits) -> Result<u16, Problem> {
+    fn group(
+        &mut self,
+        (name, traits): (&str, Traits),
+        given: &Behavior,
+        target: &Target,
+    ) -> Result<u16, Problem> {
         if self.scene.groups.len() >= MOST_NUMBERED {
             let reason = format!(
                 "more than {MOST_NUMBERED} groups of agents; put several into one grid or source, or give \
@@ -279,7 +244,7 @@ impl<'a> Population<'a> {
             );
             return Err(Problem::new("", reason));
         }
-        if let Some(ProfileChoice::Custom(custom)) = behavior.profile {
+        if let Some(ProfileChoice::Custom(custom)) = &given.profile {
             self.custom.insert(format!("{custom:?}"));
             if self.custom.len() > MOST_CUSTOM {
                 let reason = format!(
@@ -288,30 +253,19 @@ impl<'a> Population<'a> {
                 return Err(Problem::new("profile", reason));
             }
         }
-        let blend = match behavior.profile {
+        let blend = match &given.profile {
             None => self.default.clone(),
             Some(choice) => profiles::blend(choice, &self.file.parameters).under("profile")?,
         };
         Ok(self.scene.add_group(Group {
             name: name.to_owned(),
             blend,
-            removal_radius: behavior.remove_within,
-            counted: behavior.counted.unwrap_or(true),
-            journey: behavior.journey,
-            direction: behavior.direction,
-            motivation: behavior.motivation.unwrap_or(self.file.motivation),
+            removal_radius: given.remove_within,
+            counted: given.counted.unwrap_or(true),
+            journey: target.journey,
+            direction: target.direction,
+            motivation: given.motivation.unwrap_or(self.file.motivation),
             traits,
         }))
     }
-}
-
-/// The keys that decide on an agent's group.
-#[derive(Debug, Clone, Copy)]
-struct Behavior<'a> {
-    journey: Option<u16>,
-    direction: Option<Vector>,
-    profile: Option<&'a ProfileChoice>,
-    remove_within: Option<f64>,
-    motivation: Option<f64>,
-    counted: Option<bool>,
 }

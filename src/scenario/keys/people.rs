@@ -12,9 +12,34 @@ use crate::scenario::keys::names::word;
 use crate::scenario::keys::profiles::ProfileChoice;
 use crate::scenario::keys::shapes::{Outline, Point, Ring};
 
+/// The keys of behavior, which single agents and groups have in common.
+///
+/// serde cannot refuse unknown keys in structs that flatten it or [`People`]: `file::range::check_names` does, where
+/// they have `#[schemars(deny_unknown_fields)]`.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Behavior {
+    /// The goal. Default: the scenario's goal.
+    pub goal: Option<Aim>,
+    /// Instead of `goal`: the name of the journey.
+    pub journey: Option<String>,
+    /// The behavior. Default: the scenario's profile.
+    pub profile: Option<ProfileChoice>,
+    /// Agents leave within this distance of their goal, meters. Default: they stay.
+    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
+    pub remove_within: Option<f64>,
+    /// How much they hurry, from 0 (calm) to 1 (told to hurry): with the walking law `headings` they then keep shorter
+    /// gaps. Default: the scenario's `motivation`.
+    #[schemars(range(min = 0, max = 1))]
+    pub motivation: Option<f64>,
+    /// Whether arrivals count as evacuated.
+    #[schemars(extend("default" = true))]
+    pub counted: Option<bool>,
+}
+
 /// A single agent.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct Agent {
     /// The start position.
     pub position: Point,
@@ -33,50 +58,19 @@ pub struct Agent {
     /// The time until the agent walks, seconds. Default: 0.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
     pub premovement_secs: Option<f64>,
-    /// The goal. Default: the scenario's goal.
-    pub goal: Option<Aim>,
-    /// Instead of `goal`: the name of the journey.
-    pub journey: Option<String>,
     /// ρ̂ (Eq. 8) of the previous frame, P/m². Default: the density from agents alone in its first frame.
     #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
     pub mean_density: Option<f64>,
-    /// The behavior. Default: the scenario's profile.
-    pub profile: Option<ProfileChoice>,
-    /// The agent leaves within this distance of its goal, meters. Default: it stays.
-    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
-    pub remove_within: Option<f64>,
-    /// How much it hurries, from 0 (calm) to 1 (told to hurry): with the walking law `headings` it then keeps shorter
-    /// gaps. Default: the scenario's `motivation`.
-    #[schemars(range(min = 0, max = 1))]
-    pub motivation: Option<f64>,
-    /// Whether its arrival counts as evacuated.
-    #[schemars(extend("default" = true))]
-    pub counted: Option<bool>,
+    #[serde(flatten)]
+    pub behavior: Behavior,
 }
 
 /// The keys that grids, crowds, sources, entrances and `from` have in common.
-///
-/// serde cannot refuse unknown keys in structs that flatten it: `file::range::check_names` does, where they have
-/// `#[schemars(deny_unknown_fields)]`.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct People {
-    /// The goal. Default: the scenario's goal.
-    pub goal: Option<Aim>,
-    /// Instead of `goal`: the name of the journey.
-    pub journey: Option<String>,
-    /// The behavior. Default: the scenario's profile.
-    pub profile: Option<ProfileChoice>,
-    /// Agents leave within this distance of their goal, meters. Default: they stay.
-    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
-    pub remove_within: Option<f64>,
-    /// How much they hurry, from 0 (calm) to 1 (told to hurry): with the walking law `headings` they then keep shorter
-    /// gaps. Default: the scenario's `motivation`.
-    #[schemars(range(min = 0, max = 1))]
-    pub motivation: Option<f64>,
-    /// Whether arrivals count as evacuated.
-    #[schemars(extend("default" = true))]
-    pub counted: Option<bool>,
+    #[serde(flatten)]
+    pub behavior: Behavior,
     /// s_pref, m/s: a number, or a distribution to draw from for each agent. Default: the scenario's `preferred_speed`.
     #[schemars(schema_with = "distribution::speed")]
     pub preferred_speed: Option<Draw>,
