@@ -1,5 +1,6 @@
 //! The colors of forces can be told apart, also by color-blind readers.
 
+use sandbox::engine::profile::Term;
 use sandbox::output::colors::{ColorMap, Rgb, TERMS};
 
 type Matrix = [[f64; 3]; 3];
@@ -85,6 +86,7 @@ fn color_differences_are_those_of_the_definition() {
 
 #[test]
 fn every_two_colors_of_forces_differ_by_20_for_normal_and_for_color_blind_vision() {
+    assert_eq!(TERMS.len(), Term::all().count());
     let colors = TERMS.iter().map(|&(name, color)| (name, color));
     let all: Vec<_> = colors.chain([("white", [255; 3])]).collect();
     for (vision, matrix) in &VISIONS {

@@ -1,8 +1,10 @@
-//! No force may make the automatic time step too long.
+//! Every force acts, and none may make the automatic time step too long.
 
 use std::sync::Arc;
 
-use crate::common::{blend, blend_with, person, run, scene, vector};
+use crate::common::{
+    blend, blend_with, block, breakdown, evaluated, person, rectangle, run, scene, vector,
+};
 use sandbox::analysis::stability::time_step;
 use sandbox::engine::clock::Clock;
 use sandbox::engine::forces::own::Force;
@@ -142,5 +144,32 @@ fn every_stiff_force_shortens_the_automatic_step() {
             }
         }
         assert!(found > 0 || term == Term::Rvo, "{term:?}");
+    }
+}
+
+#[test]
+fn every_term_that_a_profile_has_acts_in_a_crowd_at_a_wall() {
+    let plain = [Parameters::default()];
+    for term in Term::all() {
+        for parameters in stiff(term).iter().chain(&plain) {
+            for name in NAMES {
+                let blend = blend_with(name, parameters);
+                if !matches!(blend.steps(), [step] if step.profile.has(term)) {
+                    continue;
+                }
+                let mut scene = scene(vec![rectangle([-1.0, 0.0], [-1.0, 3.0])], blend);
+                scene.agents = block(vector(0.2, 0.2), 4, 4, 0.28, vector(9.0, 0.5));
+                for (k, agent) in scene.agents.iter_mut().enumerate() {
+                    agent.velocity = vector(0.3, 0.1 * (k % 3) as f64);
+                }
+                let simulation = evaluated(scene);
+                let acts = |id| {
+                    let profiles = breakdown(&simulation, id).profiles;
+                    let mut terms = profiles.iter().filter_map(|of| of.accelerations.get(term));
+                    terms.any(|acceleration| acceleration.norm() > 0.0)
+                };
+                assert!((0..16).any(acts), "{term:?}, {name}, {parameters:?}");
+            }
+        }
     }
 }
