@@ -8,6 +8,7 @@ use sandbox::scenario::measurements::Measurement;
 use serde_json::{Value, json};
 
 use crate::common::simulated::{measured, scenario};
+use crate::common::whole::documents;
 
 fn drive(run: &mut Run) {
     let observers: &mut [Box<dyn Observer<Fault>>] = &mut [];
@@ -175,5 +176,22 @@ fn every_value_has_a_definition_and_the_page_has_all_of_them() {
             );
             assert!(page.contains(&row), "docs/measurements.md lacks {row}");
         }
+    }
+}
+
+#[test]
+fn every_measurement_has_as_many_values_as_quantities() {
+    for document in documents() {
+        let mut run = Run::new(scenario(&document, &[]).unwrap()).unwrap();
+        run.simulation.evaluate().unwrap();
+        run.measure();
+        let quantities = run
+            .scenario
+            .measurements
+            .iter()
+            .flat_map(Measurement::quantities);
+        let names: Vec<String> = quantities.map(|quantity| quantity.name).collect();
+        let results = run.metrics.results(&run.simulation).into_iter();
+        assert_eq!(results.map(|metric| metric.name).collect::<Vec<_>>(), names);
     }
 }
