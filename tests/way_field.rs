@@ -1,5 +1,5 @@
-//! Sampled ways agree with a visibility graph by brute force, and the corners of whole ways with the path maps that they
-//! come from.
+//! Sampled ways agree with a visibility graph by brute force, and the corners of whole ways with the path maps that
+//! they come from.
 
 use std::collections::BTreeSet;
 
@@ -82,8 +82,8 @@ impl Oracle {
         Self { sights, ends, rest }
     }
 
-    /// The length of the shortest way from `p`, meters, and the number of its first corner, if it has one; the number is
-    /// `Err` if two ways with different beginnings are equally long.
+    /// The length of the shortest way from `p`, meters, and the number of its first corner, if it has one; the number
+    /// is `Err` if two ways with different beginnings are equally long.
     fn way(&self, p: Vector) -> (f64, Result<Option<usize>, ()>) {
         let sights = &self.sights;
         let straight = self

@@ -21,7 +21,8 @@ use self::setting::Setting;
 /// Its name on the command line.
 pub const NAME: &str = "compare";
 /// A description, in one line.
-pub const ABOUT: &str = "computing time per simulated second beside rustsim-crowd, JuPedSim and RVO2, on the same crowds";
+pub const ABOUT: &str =
+    "computing time beside rustsim-crowd, JuPedSim and RVO2, on the same crowds";
 
 /// The paper's radius of avoidance, meters.
 const WIDE: f64 = 5.0;
@@ -117,25 +118,27 @@ fn others(python: &Path, notes: &mut Vec<String>) -> Vec<Setting> {
 fn conditions() -> String {
     format!(
         "All engines get the same agents with the same radii at the same positions at {DENSITY} P/m², half of them \
-         walking to the right and half to the left, no walls. Each uses its own time step Δt, so the cost is computing time per \
-         simulated second: time per step / Δt. A turn is {TURN} s of simulated time, fewer steps where these take long. The \
-         engines take turns, after first steps that do not count. A ratio is the cost relative to this engine: the same family \
-         of models with the same radius on as many threads, turn by turn. The mean speed is the mean distance of the agents \
-         from their first positions over the simulated time: all engines really move them. Larger crowds are left out where a \
-         step or placing the agents would take more than {PATIENCE} s."
+         walking to the right and half to the left, no walls. Each uses its own time step Δt, so the cost is \
+         computing time per simulated second: time per step / Δt. A turn is {TURN} s of simulated time, fewer steps \
+         where these take long. The engines take turns, after first steps that do not count. A ratio is the cost \
+         relative to this engine: the same family of models with the same radius on as many threads, turn by turn. \
+         The mean speed is the mean distance of the agents from their first positions over the simulated time: all \
+         engines really move them. Larger crowds are left out where a step or placing the agents would take more than \
+         {PATIENCE} s."
     )
 }
 
 fn differences() -> String {
     format!(
-        "The models differ. Social forces: here (§5.3.1) a force depends on the relative velocity, acts in the field of view \
-         only, and agents that touch push; rustsim-crowd has Helbing's circular exponential force without contact; JuPedSim \
-         adds body force and friction. rustsim-crowd's radius follows from the range B of its force (8 B + 1 m), so that {WIDE} \
-         m means B = 0.5 m. JuPedSim's radii are fixed. Velocity obstacles: here (§5.3.2) an agent chooses among 250 random \
-         velocities every 0.1 s; RVO2 solves a linear program in every step, with no limit on the neighbors within the radius, \
-         or with the 10 nearest as in its examples, a time horizon of 2 s, and the time step of its examples, \
-         0.25 s. Its preferred velocities are set once. JuPedSim's speed models have no counterpart here. JuPedSim and RVO2 run \
-         on one thread. Precision differs, too (mixed: f64, with sums over near pairs in f32)."
+        "The models differ. Social forces: here (§5.3.1) a force depends on the relative velocity, acts in the field \
+         of view only, and agents that touch push; rustsim-crowd has Helbing's circular exponential force without \
+         contact; JuPedSim adds body force and friction. rustsim-crowd's radius follows from the range B of its force \
+         (8 B + 1 m), so that {WIDE} m means B = 0.5 m. JuPedSim's radii are fixed. Velocity obstacles: here (§5.3.2) \
+         an agent chooses among 250 random velocities every 0.1 s; RVO2 solves a linear program in every step, with \
+         no limit on the neighbors within the radius, or with the 10 nearest as in its examples, a time horizon of 2 \
+         s, and the time step of its examples, 0.25 s. Its preferred velocities are set once. JuPedSim's speed models \
+         have no counterpart here. JuPedSim and RVO2 run on one thread. Precision differs, too (mixed: f64, with sums \
+         over near pairs in f32)."
     )
 }
 

@@ -102,15 +102,15 @@ fn notes() -> Vec<String> {
         )
     });
     vec![
-        "Block: the crowd of `scaling`, at rest. Streams: 4 P/m², sph, half of the agents walk to the right and half to the \
-         left. Concert from 150 s and plaza from 10 s on, as shipped. Halo: agents of other parts in reach, plus the margin \
-         of the lists. Work: the measured time of RVO goes to the agents on which it acts, the rest to agents or pairs, \
-         whichever gives a part more."
+        "Block: the crowd of `scaling`, at rest. Streams: 4 P/m², sph, half of the agents walk to the right and half \
+         to the left. Concert from 150 s and plaza from 10 s on, as shipped. Halo: agents of other parts in reach, \
+         plus the margin of the lists. Work: the measured time of RVO goes to the agents on which it acts, the rest \
+         to agents or pairs, whichever gives a part more."
             .to_owned(),
         format!(
-            "Cuts are held for the seconds in the head of the table; then the agents of the largest part over the mean. An \
-             agent of a halo takes {} bytes per frame, and {} in a frame with new lists; with RVO, {} in a coarse frame with \
-             new lists.",
+            "Cuts are held for the seconds in the head of the table; then the agents of the largest part over the \
+             mean. An agent of a halo takes {} bytes per frame, and {} in a frame with new lists; with RVO, {} in a \
+             coarse frame with new lists.",
             bytes.usual(),
             bytes.most(),
             Traffic::of_columns(true).most()

@@ -23,7 +23,8 @@ create_exception!(
     sandbox_crowds,
     Error,
     PyValueError,
-    "A scenario, a setting or an argument is invalid, or the simulation failed. The message names the place and the fix."
+    "A scenario, a setting or an argument is invalid, or the simulation failed. The message names the place and the \
+     fix."
 );
 
 /// The error with this message.

@@ -37,8 +37,8 @@ impl Native {
         py.detach(|| rayon::scope(|_| Self::begun(given, collect)))
     }
 
-    /// Simulates `frames` frames, or as many as end within `seconds`, and returns their number. `to_end`: not beyond the
-    /// end of the run.
+    /// Simulates `frames` frames, or as many as end within `seconds`, and returns their number. `to_end`: not beyond
+    /// the end of the run.
     fn advance(
         &mut self,
         py: Python<'_>,

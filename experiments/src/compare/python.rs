@@ -132,8 +132,8 @@ impl Package {
         let name = self.name;
         let how = |said: &str| {
             format!(
-                "`{} -c 'import {name}'` does not work: {said}; `python3 -m venv peers && peers/bin/pip install {}`, then \
-                 --python peers/bin/python",
+                "`{} -c 'import {name}'` does not work: {said}; `python3 -m venv peers && peers/bin/pip install {}`, \
+                 then --python peers/bin/python",
                 python.display(),
                 PACKAGES.map(|package| package.name).join(" ")
             )

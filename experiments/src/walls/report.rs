@@ -67,8 +67,8 @@ impl WallReport {
             ("The hidden and the solid region:", self.regions()),
         ];
         let parts = parts.map(|(title, table)| format!("{title}\n\n{}\n", table.markdown()));
-        "The polygons' methods and Akinci's particles are measured against the hidden region, the other particles and the \
-         maps against the solid; 0 is a rounding error.\n\n"
+        "The polygons' methods and Akinci's particles are measured against the hidden region, the other particles and \
+         the maps against the solid; 0 is a rounding error.\n\n"
             .to_owned()
             + &parts.concat()
     }
