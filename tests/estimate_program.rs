@@ -65,7 +65,7 @@ fn an_estimate_is_the_same_on_any_number_of_threads_and_goes_on_where_it_ended()
     let output = run_in(folder.path(), &estimate("cut", &wanted));
     assert_eq!(answer(&output), answers[0]);
     assert!(
-        stderr(&output).contains("7 kept from before"),
+        stderr(&output).contains("4 kept from before"),
         "{}",
         stderr(&output)
     );
@@ -221,7 +221,7 @@ fn runs_without_a_value_are_counted_apart() {
     let output = run_in(folder.path(), &estimate("out", &more));
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        stderr(&output).contains("fewer than two of 10 runs"),
+        stderr(&output).contains("fewer than two of 4 runs"),
         "{}",
         stderr(&output)
     );

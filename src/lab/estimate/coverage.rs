@@ -1,6 +1,6 @@
 //! How often intervals hold the value: estimates repeated with the runs of a pool.
 //!
-//! The pool has runs of a question at its four coarsest steps, with many seeds. An estimate is repeated with seeds drawn
+//! The pool has runs of a question at its coarsest steps, with many seeds. An estimate is repeated with seeds drawn
 //! from it with replacement, as from an endless crowd of runs in which the pool's means are the true ones. Its interval
 //! is compared with the mean at the finest step, and with the limit that all runs of the pool together give. What the
 //! program knows of the scene itself does not count.

@@ -6,9 +6,10 @@
 //!
 //! with μ its mean in the limit, β the error of the paper's step, and ε the chance of the seed, normal with a standard
 //! deviation σ that does not depend on h. μ has a flat prior; p is one of nine orders between 0.4 and 2.5, of which 1
-//! is the most likely at first; β is normal with mean 0 and a standard deviation of 0.1, 0.3, 1, 3 or 10 σ, whose weights
-//! are the shares of such sizes among results that were measured before (`prior.rs`). Given p and the size of β, the posterior of (μ, β) is normal; the posterior of μ is the mixture over all p and sizes, weighted
-//! by how likely they make the data.
+//! is the most likely at first; β is normal with mean 0 and a standard deviation of 0.1, 0.3, 1, 3 or 10 σ, whose
+//! weights are the shares of such sizes among results that were measured before (`prior.rs`). Given p and the size of
+//! β, the posterior of (μ, β) is normal; the posterior of μ is the mixture over all p and sizes, weighted by how likely
+//! they make the data.
 //!
 //! Steps may be too long for any order: social forces in a jam change the flow by half from one step to the next. So
 //! with a prior weight of 0.1 the coarsest of three or more steps does not belong to the others, and its mean may be
@@ -190,33 +191,43 @@ impl Component {
 /// The posterior for this order, and a standard deviation `size` of β; and the logarithm of how likely they make the
 /// data. The standard deviation of runs is 1.
 fn component(levels: &[Level], order: f64, size: f64) -> (f64, Component) {
-    // The inverse of the covariance matrix of (μ, β) is [[a, b], [b, d]], its product with their means is (u, v).
-    let (mut a, mut b, mut d) = (0.0, 0.0, 1.0 / (size * size));
-    let (mut u, mut v) = (0.0, 0.0);
-    for level in levels {
-        let x = (level.step / REFERENCE_STEP).powf(order);
-        let (weight, mean) = (level.runs as f64, level.mean);
-        a += weight;
-        b += weight * x;
-        d += weight * x * x;
-        u += weight * mean;
-        v += weight * x * mean;
-    }
-    let determinant = a * d - b * b;
-    let value = (d * u - b * v) / determinant;
-    let error = (a * v - b * u) / determinant;
-    let shares = levels.iter().map(|level| {
-        let x = (level.step / REFERENCE_STEP).powf(order);
-        (d - b * x) / determinant * level.runs as f64
+    // The inverse of the covariance matrix of (μ, β) is [[a, b], [b, d]]. Sums of differences keep their digits where β
+    // may be far larger than the spread.
+    let x: Vec<f64> = levels
+        .iter()
+        .map(|level| (level.step / REFERENCE_STEP).powf(order))
+        .collect();
+    let weights = || levels.iter().map(|level| level.runs as f64).zip(&x);
+    let free = 1.0 / (size * size);
+    let a: f64 = weights().map(|(weight, _)| weight).sum();
+    let d = free + weights().map(|(weight, x)| weight * x * x).sum::<f64>();
+    let middle = weights().map(|(weight, x)| weight * x).sum::<f64>() / a;
+    let apart = weights().map(|(weight, x)| weight * (x - middle).powi(2));
+    let determinant = a * (free + apart.sum::<f64>());
+    let shares = levels.iter().zip(&x).map(|(level, own)| {
+        let others = weights().map(|(weight, x)| weight * x * (x - own));
+        (free + others.sum::<f64>()) / determinant * level.runs as f64
     });
-    let log = 0.5 * (u * value + v * error) - 0.5 * (size * size * determinant).ln();
+    let shares: Vec<f64> = shares.collect();
+    let means = || levels.iter().map(|level| level.mean);
+    let value: f64 = shares
+        .iter()
+        .zip(means())
+        .map(|(share, mean)| share * mean)
+        .sum();
+    let errors = weights().zip(means());
+    let error = errors.map(|((weight, x), mean)| weight * (x - middle) * mean);
+    let error = a * error.sum::<f64>() / determinant;
+    let fitted = weights().zip(means());
+    let fitted = fitted.map(|((weight, x), mean)| weight * mean * (value + x * error));
+    let log = 0.5 * fitted.sum::<f64>() - 0.5 * (size * size * determinant).ln();
     let component = Component {
         weight: 0.0,
         order,
         value,
         variance: d / determinant,
         error,
-        shares: shares.collect(),
+        shares,
     };
     (log, component)
 }

@@ -55,7 +55,7 @@ impl Reached {
 }
 
 impl Series {
-    /// Mean at each step and variance, of which `prior` was known before; `None` with fewer than two values at any step.
+    /// Mean at each step and variance, of which `prior` was known; `None` with fewer than two values at any step.
     pub fn means(&self, prior: &Prior) -> Option<Means> {
         let (mut levels, mut squares, mut own_degrees) = (Vec::new(), 0.0, 0.0);
         for (&step, values) in self.steps.iter().zip(&self.values) {
