@@ -178,7 +178,6 @@ fn pushes_need_both_files_and_are_compared_with_them() {
     // 0.4 m per 0.16 s, and four people behind the first one who walk at 0.5 m/s at the same time.
     for expected in [
         "front, from six speeds [m/s] | 2.5 ± 20 %",
-        "front, from breaks [m/s] | 2.5 ± 20 %",
         "speeds passed on [m/s] | 2 ± 30 %",
         "top speed of person 5 [m/s] | 0.5 ± 30 %",
         "reach of person 1 [m] | 0.5 ± 30 %",
