@@ -61,6 +61,7 @@ mod queues;
 mod reference_states;
 mod resumed;
 mod round;
+mod route_choice;
 mod runs;
 mod rvo;
 mod rvo_contact;

@@ -8,7 +8,7 @@ use crate::engine::journeys::Trip;
 use crate::engine::math::Vector;
 use crate::engine::period::Period;
 use crate::engine::random::{self, Purpose};
-use crate::engine::ways::{Destination, Route, Walker, Ways};
+use crate::engine::ways::{Destination, Plan, Route, Walker, Ways};
 
 /// D_i ∈ U[0.215, 0.265] m (§5.6).
 pub const RADIUS_RANGE: [f64; 2] = [0.215, 0.265];
@@ -98,6 +98,9 @@ pub struct Agents {
     pub lacks_routes: bool,
     /// The point that the agent walks to on its route, meters. As long as `route`.
     pub aim: Vec<Vector>,
+    /// The opening that the agent walks to, if it chooses ways by time or through doors; `None` for agents that have
+    /// no goal on the floor or entered since the last coarse frame. Empty in scenes without rooms.
+    pub plan: Vec<Option<Plan>>,
     /// How far the agent has come on its journey; `None` for agents without a journey, and for those that entered
     /// since the last coarse frame. Empty in scenes without journeys.
     pub trip: Vec<Option<Trip>>,
@@ -149,7 +152,7 @@ impl Agents {
     }
 
     /// The arrays that may be empty, or lack agents that entered since.
-    fn sometimes(&mut self) -> [&mut dyn Column; 12] {
+    fn sometimes(&mut self) -> [&mut dyn Column; 13] {
         [
             &mut self.avoidance,
             &mut self.allowed_speed,
@@ -157,6 +160,7 @@ impl Agents {
             &mut self.acceleration_before,
             &mut self.route,
             &mut self.aim,
+            &mut self.plan,
             &mut self.trip,
             &mut self.zone,
             &mut self.laps,
@@ -277,7 +281,7 @@ impl Agents {
         self.route.resize(self.len(), None);
         self.aim.resize(self.len(), Vector::zeros());
         let (ids, positions, goals, radii) = (&self.id, &self.position, &self.goal, &self.radius);
-        let trips = &self.trip;
+        let (trips, plans) = (&self.trip, &self.plan);
         let routes = self.route.par_iter_mut().zip(&mut self.aim);
         let routes = routes.zip(positions).enumerate();
         routes
@@ -288,16 +292,22 @@ impl Agents {
                     return;
                 }
                 let trip = trips.get(i).and_then(Option::as_ref);
+                let to = destination(trip, goals[i]);
+                let plan = plans.get(i).and_then(Option::as_ref);
                 let walker = Walker {
                     id: ids[i],
                     position,
-                    to: trip
-                        .and_then(Trip::place_ahead)
-                        .map_or(Destination::Goal(goals[i]), Destination::Place),
+                    to,
                     radius: radii[i],
+                    detour: plan.and_then(|plan| plan.detour(ways, to)),
                 };
                 *aim = ways.aim(&walker, route, seed);
             });
+    }
+
+    /// Where agent `i` wants to go.
+    pub fn destination(&self, i: usize) -> Destination {
+        destination(self.trip.get(i).and_then(Option::as_ref), self.goal[i])
     }
 
     /// Agent `i` finds its way again.
@@ -322,6 +332,12 @@ impl Agents {
             column.arrange(order);
         }
     }
+}
+
+/// Where an agent on this trip, or with this goal, wants to go.
+fn destination(trip: Option<&Trip>, goal: Vector) -> Destination {
+    let place = trip.and_then(Trip::place_ahead);
+    place.map_or(Destination::Goal(goal), Destination::Place)
 }
 
 /// D_i of agent `id`, if neither it nor its group has another, meters. `seed` is that of the population.

@@ -1,10 +1,12 @@
 //! The acceleration of one agent, term by term, computed with the engine's force functions on the frozen frame.
 
 mod heading;
+mod openings;
 mod text;
 mod visit;
 
 pub use heading::{HeadingChoice, HeadingSeen};
+pub use openings::{WayChoice, WaySeen};
 pub use visit::{Alternative, Doing, Visit, Why};
 
 use serde::Serialize;
@@ -51,6 +53,9 @@ pub struct Breakdown {
     /// Its way around walls; `None` if it walks straight toward its goal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub way: Option<WayLeft>,
+    /// The ways between which it chooses; `None` if it takes the shortest one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub way_choice: Option<WayChoice>,
     /// When it begins to walk, seconds; `None` if it already walks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub walks_from_secs: Option<f64>,
@@ -175,6 +180,7 @@ impl Breakdown {
             acceleration: fields.acceleration[i].into(),
             profiles: profiles.collect(),
             way: way_left(simulation, i),
+            way_choice: WayChoice::of(simulation, i),
             walks_from_secs: (agents.walks_from.get(i).copied())
                 .filter(|&from| frame.clock.time() < from),
             visit: Visit::of(simulation, i),

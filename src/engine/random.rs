@@ -19,6 +19,8 @@ pub enum Purpose {
     Choice = 4,
     /// The times that agents wait or are served.
     Waiting = 5,
+    /// Times at which agents compare their ways.
+    Plan = 6,
     /// Preferred speed of an agent.
     Speed = 10,
     /// Time before an agent starts to walk.

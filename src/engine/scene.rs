@@ -21,7 +21,7 @@ use crate::engine::period::Period;
 use crate::engine::placement::Grid;
 use crate::engine::profile::{Blend, Override, Profile};
 use crate::engine::traits::Traits;
-use crate::engine::ways::Ways;
+use crate::engine::ways::{Rooms, Ways};
 
 pub use needs::Needs;
 pub use region::Region;
@@ -51,6 +51,37 @@ impl Integrator {
         Self::VelocityVerlet,
         Self::Midpoint,
     ];
+}
+
+/// How agents choose between ways.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Routing {
+    /// By what they choose.
+    pub choice: RouteChoice,
+    /// What they know.
+    pub knowledge: Knowledge,
+}
+
+/// By what agents choose between ways.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RouteChoice {
+    /// The length.
+    #[default]
+    Shortest,
+    /// The expected time.
+    Quickest,
+}
+
+/// What agents know about waiting times.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Knowledge {
+    /// Those of the whole floor.
+    #[default]
+    Floor,
+    /// Those before the openings of the room where they are.
+    Sight,
 }
 
 /// Agents that share a blend and the rules for leaving.
@@ -181,6 +212,8 @@ pub struct Scene {
     pub journeys: Journeys,
     /// Ways around walls; `None`: agents walk straight toward their goals, as in the paper.
     pub ways: Option<Arc<Ways>>,
+    /// How agents choose between ways.
+    pub routing: Routing,
     /// Forces from outside this crate.
     pub own_forces: Vec<Arc<dyn Force>>,
 }
@@ -209,6 +242,7 @@ impl Default for Scene {
             pushes: Vec::new(),
             journeys: Journeys::default(),
             ways: None,
+            routing: Routing::default(),
             own_forces: Vec::new(),
         }
     }
@@ -221,6 +255,16 @@ impl Scene {
             walls: Walls::new(obstacles),
             ..Self::default()
         }
+    }
+
+    /// The rooms of the floor, if agents choose ways by time or some doors restrict them.
+    pub fn rooms(&self) -> Option<&Rooms> {
+        self.ways.as_ref()?.rooms.as_ref()
+    }
+
+    /// Whether agents choose ways by time.
+    pub fn by_time(&self) -> bool {
+        self.routing.choice == RouteChoice::Quickest
     }
 
     /// Adds a group and returns its index.

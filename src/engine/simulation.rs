@@ -10,6 +10,7 @@ mod integrate;
 mod limited;
 mod loads;
 mod passing;
+mod plans;
 mod queues;
 mod schedule;
 mod situation;
@@ -17,11 +18,13 @@ mod stages;
 mod state;
 mod trips;
 
+pub use bound::Stream;
 pub use choice::{Decision, Expected, Prospect, Reason};
 pub use entrances::Backlog;
 pub use goals::{Absent, GoalError};
 pub use limited::{Limited, SPOT_RADIUS};
 pub use passing::{BEFORE_WALLS, WALKS_ON};
+pub use plans::{Comparison, Outlook};
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};
@@ -254,6 +257,7 @@ impl Simulation {
     fn compute(&mut self) -> Result<(), Fault> {
         self.follow_schedule()?; // entries and pushes, coarse
         self.follow_journeys(); // coarse
+        self.follow_plans(); // coarse
         self.update_neighbors(); // 1
         self.pack();
         self.update_density_and_pressure(self.crowd.clock.time_step()); // 1B

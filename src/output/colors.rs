@@ -158,5 +158,7 @@ pub static DENSITY: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::viridis([0.0
 /// Yellow to dark red for forces on walls.
 pub static WALL_FORCE: LazyLock<ColorMap> =
     LazyLock::new(|| ColorMap::heat([0.0, WALL_FORCE_RANGE]));
+/// Yellow to red for waits, seconds.
+pub static WAIT: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::heat([0.0, 60.0]));
 /// Inferno for speeds.
 pub static SPEED: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::inferno([0.0, SPEED_RANGE]));

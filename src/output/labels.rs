@@ -252,7 +252,7 @@ pub fn of_goals(scene: &Scene, goals: &[GoalOf]) -> Vec<(String, Vec<Spot>)> {
 /// Spots for the name of a place with these lines.
 pub fn of_place(walls: &Walls, place: &Place, lines: &[Vector], screen: &Screen) -> Vec<Spot> {
     match &place.kind {
-        Kind::Exit(_) | Kind::Line(_) => {
+        Kind::Exit(_) | Kind::Line(_) | Kind::Door(_) => {
             let [a, b] = [lines[0], lines[1]];
             let (middle, aside) = ((a + b) * 0.5, perpendicular(direction(b - a)));
             let is_out = |way: &Vector| walls.obstacle_at(middle + way * BEHIND).is_some();

@@ -40,6 +40,7 @@ pub fn color(kind: &Kind) -> Rgb {
         Kind::Line(_) | Kind::Disk { .. } => [0, 114, 178],
         Kind::Waiting(_) => [230, 159, 0],
         Kind::Queue(_) => [204, 121, 167],
+        Kind::Door(_) => [150, 90, 50],
     }
 }
 
@@ -64,6 +65,7 @@ pub fn lines(place: &Place) -> Vec<Vector> {
     match &place.kind {
         Kind::Exit(exit) => exit.line.to_vec(),
         Kind::Line(line) => line.to_vec(),
+        Kind::Door(door) => door.line.to_vec(),
         Kind::Disk { at, within } => {
             let turns =
                 (0..=CIRCLE).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(CIRCLE));

@@ -32,7 +32,7 @@ pub enum Count {
 
 fn count_of(place: &Place) -> Option<Count> {
     match &place.kind {
-        Kind::Exit(_) => Some(Count::Passed),
+        Kind::Exit(_) | Kind::Door(_) => Some(Count::Passed),
         Kind::Queue(_) | Kind::Waiting(_) => Some(Count::Present),
         Kind::Line(_) | Kind::Disk { .. } => None,
     }

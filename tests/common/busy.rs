@@ -40,7 +40,7 @@ pub fn hall(rng: &mut ChaCha8Rng, most: u32) -> Value {
         [f64::from(k), enters, 9.8 + f64::from(k), 11.2, 1.0, 0.0]
     });
     let people: Vec<[f64; 6]> = people.collect();
-    json!({
+    let mut hall = json!({
         "name": "hall", "seed": rng.random_range(0..1000), "duration_secs": 60, "profile": profiles[0],
         "walkable_area": [[[[0, 0], [30, 0], [30, 12], [0, 12]]]],
         "obstacles": [[[9, 0], [9.3, 0], [9.3, 8], [9, 8]], [[20, 4], [20.3, 4], [20.3, 12], [20, 12]]],
@@ -69,7 +69,17 @@ pub fn hall(rng: &mut ChaCha8Rng, most: u32) -> Value {
         "events": [{"at_secs": rng.random_range(0.0..5.0), "release": "pit"},
                    {"at_secs": rng.random_range(0.0..4.0), "for_secs": 0.6, "region": [[2, 2], [15, 9]],
                     "goal_scale": 3, "ignore_contact": true}],
-    })
+    });
+    if rng.random() {
+        hall["route_choice"] = json!("quickest");
+        hall["knowledge"] = json!(one(rng, &["floor", "sight"]));
+    }
+    if rng.random() {
+        let closed = [from, from + 1.5];
+        hall["doors"] = json!([{"name": "door", "line": [[9.15, 8], [9.15, 12]], "closed_secs": [closed]},
+                               {"name": "valve", "line": [[20.1, 0], [20.1, 4]], "one_way": [1, 0]}]);
+    }
+    hall
 }
 
 /// One to three stages, of which the last are exits.

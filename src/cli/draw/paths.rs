@@ -42,7 +42,8 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
             )
         }
     };
-    let (ways, to) = match ways.leads_to(to) {
+    let is_known = ways.leads_to(to);
+    let (ways, to) = match is_known {
         true => (Arc::clone(ways), to),
         // No agent goes there, so the scene has no path map to it.
         false => {
@@ -58,6 +59,7 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
         ways,
         to,
         place: place.map(|k| k as u16),
+        is_known,
     })
 }
 

@@ -30,6 +30,7 @@ impl Display for Breakdown {
             self.pressure
         )?;
         self.write_way(f)?;
+        self.write_way_choice(f)?;
         self.write_visit(f)?;
         self.write_choice(f)?;
         self.write_accelerations(f)?;
@@ -56,6 +57,7 @@ impl Breakdown {
         let mut text = String::new();
         // Writing to a string cannot fail.
         self.write_way(&mut text).ok();
+        self.write_way_choice(&mut text).ok();
         self.write_visit(&mut text).ok();
         text
     }
@@ -77,6 +79,33 @@ impl Breakdown {
             vector(way.next),
             vector(way.heading)
         )
+    }
+
+    fn write_way_choice(&self, f: &mut impl Write) -> fmt::Result {
+        let Some(choice) = &self.way_choice else {
+            return Ok(());
+        };
+        writeln!(
+            f,
+            "  way by time: {}; compared again at {:.2} s, changed {} times",
+            choice.reason, choice.again_at_secs, choice.changes
+        )?;
+        for way in &choice.ways {
+            let flow = way.flow_per_sec.map_or(String::new(), |flow| {
+                format!(", {} ahead at {flow:.2} P/s", way.ahead)
+            });
+            writeln!(
+                f,
+                "    {:6.2} s: {:.2} m to {}{flow}, through after {:.2} s{}{}",
+                way.total_secs,
+                way.length,
+                way.through,
+                way.through_secs,
+                if way.shortest { "; the shortest" } else { "" },
+                if way.taken { "; taken" } else { "" },
+            )?;
+        }
+        Ok(())
     }
 
     fn write_visit(&self, f: &mut impl Write) -> fmt::Result {

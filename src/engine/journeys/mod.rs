@@ -3,7 +3,7 @@
 mod place;
 mod trip;
 
-pub use place::{Exit, Kind, Place, Queue, WaitingArea};
+pub use place::{Door, Exit, Kind, Place, Queue, WaitingArea};
 pub use trip::{Status, Trip};
 
 use std::ops::Range;
@@ -46,12 +46,13 @@ impl JourneyStage {
     /// The places whose lines count for an agent bound for `chosen`: all places of the stage. With shares, only
     /// `chosen` counts, so that the shares hold; but an agent bound for an exit leaves by any exit of the stage that it
     /// crosses.
-    pub fn passed<'a>(&'a self, chosen: &'a u16, places: &[Place]) -> &'a [u16] {
+    pub fn passed(&self, chosen: u16, places: &[Place]) -> impl Iterator<Item = u16> {
         let is_drawn = matches!(self.choice, Choice::Shares(_));
-        match is_drawn && !places[usize::from(*chosen)].is_exit() {
-            true => std::slice::from_ref(chosen),
-            false => &self.places,
-        }
+        let is_exit = |place: u16| places[usize::from(place)].is_exit();
+        let counts = move |&place: &u16| {
+            !is_drawn || place == chosen || (is_exit(chosen) && is_exit(place))
+        };
+        self.places.iter().copied().filter(counts)
     }
 }
 

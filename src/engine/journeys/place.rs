@@ -32,6 +32,17 @@ pub enum Kind {
     Waiting(WaitingArea),
     /// Agents queue here.
     Queue(Queue),
+    /// A door between rooms.
+    Door(Door),
+}
+
+/// A door between rooms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Door {
+    /// Its ends, meters.
+    pub line: [Vector; 2],
+    /// Whether people pass it only from the left to the right of its line.
+    pub one_way: bool,
 }
 
 /// A line at which agents leave.
@@ -82,6 +93,7 @@ impl Kind {
             Self::Line(_) | Self::Disk { .. } => "waypoint",
             Self::Waiting(_) => "waiting area",
             Self::Queue(_) => "queue",
+            Self::Door(_) => "door",
         }
     }
 }
@@ -90,7 +102,9 @@ impl Place {
     /// The points and lines that agents walk to, for a path map.
     pub fn goals(&self) -> Vec<Goal> {
         match &self.kind {
-            Kind::Exit(Exit { line, .. }) | Kind::Line(line) => vec![Goal::Line(*line)],
+            Kind::Exit(Exit { line, .. }) | Kind::Line(line) | Kind::Door(Door { line, .. }) => {
+                vec![Goal::Line(*line)]
+            }
             Kind::Disk { at, .. } => vec![Goal::Point(*at)],
             Kind::Waiting(waiting) => {
                 let sides = sides(waiting.area.points());
@@ -103,7 +117,9 @@ impl Place {
     /// The point of the place nearest to `p`, meters.
     pub fn nearest_point(&self, p: Vector) -> Vector {
         match &self.kind {
-            Kind::Exit(Exit { line: [a, b], .. }) | Kind::Line([a, b]) => nearest_on(p, *a, *b),
+            Kind::Exit(Exit { line: [a, b], .. })
+            | Kind::Line([a, b])
+            | Kind::Door(Door { line: [a, b], .. }) => nearest_on(p, *a, *b),
             Kind::Disk { at, .. } => *at,
             Kind::Waiting(waiting) if waiting.area.contains(p) => p,
             Kind::Waiting(waiting) => {
@@ -117,7 +133,9 @@ impl Place {
     /// The line that agents cross, if it has one.
     pub fn line(&self) -> Option<[Vector; 2]> {
         match self.kind {
-            Kind::Exit(Exit { line, .. }) | Kind::Line(line) => Some(line),
+            Kind::Exit(Exit { line, .. }) | Kind::Line(line) | Kind::Door(Door { line, .. }) => {
+                Some(line)
+            }
             _ => None,
         }
     }

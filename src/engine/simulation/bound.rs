@@ -1,13 +1,30 @@
-//! The number of agents bound for each place, by distance.
+//! Streams of agents toward places and openings: the number that is bound for each, by distance, and the flow.
 
-use super::{Crowd, PlaceState};
-use crate::engine::journeys::Status;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::Crowd;
+use super::plans::Times;
+use crate::engine::clock::Clock;
+use crate::engine::journeys::{Kind, Place, Status};
 use crate::engine::scene::Scene;
+use crate::engine::ways::{Destination, Step};
 
-/// The flow through a place is observed over this time, seconds.
-const OBSERVED: f64 = 10.0;
+/// The flow through an opening is averaged over this time, seconds.
+const OBSERVED: f64 = 15.0;
+/// The flow that follows from the width counts as much as this time of observation, seconds.
+const EXPECTED: f64 = 5.0;
+/// The least flow that agents expect, P/(m s): about what Weidmann (1993) gives.
+pub(super) const FLOW_PER_METER: f64 = 1.3;
+/// If this many times as many agents stand within [`BEFORE`] meters of a line as walk there at [`FLOW_PER_METER`], and
+/// one more, a crowd stands before it, and its flow is its capacity.
+const CROWD: f64 = 2.0;
+/// The area before a line ends at this distance, meters.
+const BEFORE: f64 = 2.0;
+/// The least flow that agents expect from observation, P/s.
+const LEAST_FLOW: f64 = 0.05;
 /// The width of the bins of distances in which agents are counted, meters.
-const BIN: f64 = 0.5;
+const BIN: f64 = 0.1;
 /// Larger distances are clamped to this, meters.
 const FARTHEST_BIN: f64 = 500.0;
 
@@ -16,8 +33,20 @@ fn bin_of(length: f64) -> usize {
     (length.min(FARTHEST_BIN) / BIN) as usize
 }
 
-impl PlaceState {
-    /// Counts an agent `length` meters away that is now bound for this place (`comes`), or no longer bound for it.
+/// The agents bound for a line, and those that have passed it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Stream {
+    /// `nearer[k]` is the number of agents bound for it that are nearer than k half meters.
+    nearer: Vec<u32>,
+    /// The number of agents that have passed it since the last second.
+    passes: u32,
+    /// The number that passed while a crowd stood before it, and how long one did, seconds. Both decay.
+    passed: f64,
+    crowded: f64,
+}
+
+impl Stream {
+    /// Counts an agent `length` meters away that is now bound for the line (`comes`), or no longer bound for it.
     pub(super) fn count(&mut self, length: f64, comes: bool) {
         let bin = bin_of(length);
         let last = self.nearer.last().copied().unwrap_or(0);
@@ -31,47 +60,174 @@ impl PlaceState {
         }
     }
 
-    /// The number of agents bound for this place that are nearer to it than `length` meters.
-    pub(super) fn nearer_than(&self, length: f64) -> u32 {
+    /// The number of agents bound for the line that are nearer to it than `length` meters.
+    pub fn nearer_than(&self, length: f64) -> u32 {
         let last = self.nearer.last().copied().unwrap_or(0);
         self.nearer.get(bin_of(length)).copied().unwrap_or(last)
     }
-}
 
-/// Once per second: counts the agents bound for each place by distance, and forgets old passes.
-pub(super) fn count(crowd: &mut Crowd, scene: &Scene) {
-    let clock = &crowd.clock;
-    let before = clock
-        .frame()
-        .saturating_sub(u64::from(clock.coarse_every()));
-    let is_due = clock.frame() == 0 || clock.time().floor() > clock.time_at(before).floor();
-    if !is_due || !scene.journeys.has_quickest() {
-        return;
+    /// The number of agents bound for the line.
+    pub fn bound(&self) -> u32 {
+        self.nearer_than(FARTHEST_BIN)
     }
-    let oldest = clock.time() - OBSERVED;
-    for state in &mut crowd.progress.places {
-        state.recent.retain(|&frame| clock.time_at(frame) > oldest);
-        state.nearer.clear();
+
+    /// Records that an agent passes the line.
+    pub(super) fn pass(&mut self) {
+        self.passes += 1;
     }
-    let agents = &crowd.agents;
-    for (trip, route) in agents.trip.iter().zip(&agents.route) {
-        let (Some(trip), Some(route)) = (trip, route) else {
-            continue;
-        };
-        let is_bound = matches!(trip.status, Status::Walking | Status::Queued { .. });
-        if !is_bound {
-            continue;
+
+    /// The flow that agents expect, P/s: that which follows from the width, `expected`, and more and more the one
+    /// observed while a crowd stands before the line.
+    pub fn flow(&self, expected: f64) -> f64 {
+        let flow = (EXPECTED * expected + self.passed) / (EXPECTED + self.crowded);
+        flow.max(LEAST_FLOW)
+    }
+
+    /// Once per second: counts the agents bound for the line at these distances again, meters.
+    fn recount(&mut self, lengths: &[f64]) {
+        self.nearer.clear();
+        for bin in lengths.iter().map(|&length| bin_of(length)) {
+            self.nearer.resize(self.nearer.len().max(bin + 2), 0);
+            self.nearer[bin + 1] += 1;
         }
-        let bin = bin_of(route.length());
-        let nearer = &mut crowd.progress.places[usize::from(trip.place)].nearer;
-        nearer.resize(nearer.len().max(bin + 2), 0);
-        nearer[bin + 1] += 1;
-    }
-    for state in &mut crowd.progress.places {
         let mut sum = 0;
-        for count in &mut state.nearer {
+        for count in &mut self.nearer {
             sum += *count;
             *count = sum;
         }
+    }
+
+    /// Once per second: takes over the agents that have passed. With less than `crowd` agents before the line, they
+    /// say nothing about its flow.
+    fn observe(&mut self, crowd: f64) {
+        let keep = 1.0 - 1.0 / OBSERVED;
+        self.passed *= keep;
+        self.crowded *= keep;
+        let passes = std::mem::take(&mut self.passes);
+        if f64::from(self.nearer_than(BEFORE)) >= crowd {
+            self.passed += f64::from(passes);
+            self.crowded += 1.0;
+        }
+    }
+}
+
+/// Whether a second has begun since the last coarse frame.
+pub(super) fn is_due(clock: &Clock) -> bool {
+    let before = clock
+        .frame()
+        .saturating_sub(u64::from(clock.coarse_every()));
+    clock.frame() == 0 || clock.time().floor() > clock.time_at(before).floor()
+}
+
+/// The width of a place that agents pass, meters; `None` for places that are no lines.
+pub(super) fn width(place: &Place) -> Option<f64> {
+    place.line().map(|[a, b]| (b - a).norm())
+}
+
+/// Once per second: counts the agents bound for each place and opening by distance, and learns the flows.
+pub(super) fn count(crowd: &mut Crowd, scene: &Scene) {
+    if !is_due(&crowd.clock) {
+        return;
+    }
+    if scene.journeys.has_quickest() {
+        crowd.count_places(scene);
+    }
+    crowd.count_steps(scene);
+    let per_meter = crowd.largest_flow(scene);
+    crowd.progress.per_meter = per_meter;
+    let speed = scene.preferred_speed.max(f64::MIN_POSITIVE);
+    let most = |width: f64| 1.0 + CROWD * FLOW_PER_METER * width * BEFORE / speed;
+    let places = scene.journeys.places.iter();
+    for (place, state) in places.zip(&mut crowd.progress.places) {
+        let width = width(place).unwrap_or(0.0);
+        state.stream.observe(most(width));
+    }
+    if let Some(rooms) = scene.rooms() {
+        for (step, stream) in (0..).zip(&mut crowd.progress.steps) {
+            stream.observe(most(rooms.opening(step).width()));
+        }
+    }
+}
+
+impl Crowd {
+    /// The flow per meter of lines before which no crowd stands, P/(m s).
+    pub(super) fn flow_per_meter(&self) -> f64 {
+        self.progress.per_meter.max(FLOW_PER_METER)
+    }
+
+    /// The largest flow per meter of all lines, P/(m s).
+    fn largest_flow(&self, scene: &Scene) -> f64 {
+        let places = scene.journeys.places.iter().zip(&self.progress.places);
+        let places = places.filter(|(place, _)| match &place.kind {
+            Kind::Exit(exit) => exit.most_per_sec.is_none(),
+            _ => true,
+        });
+        let places = places.filter_map(|(place, state)| Some((width(place)?, &state.stream)));
+        let steps = (0..).zip(&self.progress.steps).filter_map(|(step, stream)| {
+            Some((scene.rooms()?.opening(step as Step).width(), stream))
+        });
+        let flows = places.chain(steps).map(|(width, stream)| {
+            stream.flow(FLOW_PER_METER * width) / width
+        });
+        flows.fold(FLOW_PER_METER, f64::max)
+    }
+
+    fn count_places(&mut self, scene: &Scene) {
+        let agents = &self.agents;
+        let mut lengths = vec![Vec::new(); self.progress.places.len()];
+        for (i, (trip, route)) in agents.trip.iter().zip(&agents.route).enumerate() {
+            let (Some(trip), Some(route)) = (trip, route) else {
+                continue;
+            };
+            if !matches!(trip.status, Status::Walking | Status::Queued { .. }) {
+                continue;
+            }
+            let detours = agents.plan.get(i).copied().flatten();
+            let length = match detours.is_some_and(|plan| plan.detours) {
+                false => route.length(),
+                true => scene.ways.as_ref().map_or(f64::INFINITY, |ways| {
+                    let way = ways.way(agents.position[i], Destination::Place(trip.place));
+                    way.map_or(f64::INFINITY, |way| way.length)
+                }),
+            };
+            lengths[usize::from(trip.place)].push(length);
+        }
+        for (state, lengths) in self.progress.places.iter_mut().zip(&lengths) {
+            state.stream.recount(lengths);
+        }
+    }
+
+    fn count_steps(&mut self, scene: &Scene) {
+        let Some(rooms) = scene.rooms().filter(|_| scene.by_time()) else {
+            return;
+        };
+        let agents = &self.agents;
+        let plans = agents.plan.par_iter().zip(&agents.position);
+        let toward = plans.map(|(plan, &p)| {
+            let plan = plan.as_ref()?;
+            let step = plan.toward?;
+            let length = rooms.length_to(p, plan.triangle, step);
+            Some((step, length.unwrap_or(0.0)))
+        });
+        let toward: Vec<Option<(Step, f64)>> = toward.collect();
+        let mut lengths = vec![Vec::new(); rooms.steps() as usize];
+        for (step, length) in toward.into_iter().flatten() {
+            lengths[step as usize].push(length);
+        }
+        self.progress.steps.resize_with(lengths.len(), Stream::default);
+        for (stream, lengths) in self.progress.steps.iter_mut().zip(&lengths) {
+            stream.recount(lengths);
+        }
+    }
+
+    /// The times that agents expect now.
+    pub(super) fn times<'a>(&'a self, scene: &'a Scene) -> Option<Times<'a>> {
+        let rooms = scene.rooms()?;
+        Some(Times {
+            rooms,
+            scene,
+            progress: &self.progress,
+            per_meter: self.flow_per_meter(),
+        })
     }
 }

@@ -3,7 +3,8 @@
 use rand::Rng;
 use serde::Serialize;
 
-use super::{Crowd, PlaceState, Simulation};
+use super::plans::is_clearly_quicker;
+use super::{Crowd, PlaceState, Simulation, bound};
 use crate::engine::journeys::{Choice, Journey, JourneyStage, Kind, Place, Status, Trip};
 use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
@@ -14,20 +15,6 @@ use crate::engine::ways::{Destination, SLACK};
 const NEAREST_EVERY: f64 = 1.0;
 /// Agents that choose the quickest place choose again after a random time in this range, seconds.
 const QUICKEST_EVERY: [f64; 2] = [2.0, 5.0];
-/// An agent changes to another place if the expected time there is less than this fraction of its own.
-const CLEARLY_QUICKER: f64 = 0.8;
-/// The least flow that agents expect through an exit, P/(m s): about what Weidmann (1993) gives.
-const FLOW_PER_METER: f64 = 1.3;
-/// If the density within [`BEFORE`] meters of a line is above this, P/m², a crowd stands before it, and its flow is its
-/// capacity. A free stream with the least flow has 0.9 P/m².
-const CROWD: f64 = 1.5;
-/// The area before a line ends at this distance, meters.
-const BEFORE: f64 = 2.0;
-/// The fewest passes after the first one from which a flow is computed.
-const FEWEST_OBSERVED: usize = 5;
-/// The least flow that agents expect from observation, P/s.
-const LEAST_FLOW: f64 = 0.1;
-
 impl Simulation {
     /// The decision that agent `i` would make now about the place of its stage; `None` if it does not walk to a place.
     pub fn decision(&self, i: usize) -> Option<Decision> {
@@ -155,8 +142,7 @@ impl Chooser<'_> {
             Choice::Quickest => {
                 let expected = |place| of(place).and_then(|prospect| prospect.expected);
                 let time = |place| expected(place).map_or(f64::INFINITY, |e| e.total_secs);
-                let is_quicker = |new, old| new < CLEARLY_QUICKER * old;
-                match best(&open, before, time, is_quicker) {
+                match best(&open, before, time, is_clearly_quicker) {
                     (place, true) => (place, Reason::NotClearlyQuicker),
                     (place, false) => (place, Reason::Quickest),
                 }
@@ -276,7 +262,7 @@ impl Chooser<'_> {
         let speed = speed.max(f64::MIN_POSITIVE);
         let state = &self.crowd.progress.places[usize::from(place)];
         let definition = &self.scene.journeys.places[usize::from(place)];
-        let ahead = state.nearer_than(length);
+        let ahead = state.stream.nearer_than(length);
         let flow = self.flow(definition, state);
         let onward = onward.map_or(0.0, |stage| {
             let from = definition.nearest_point(self.crowd.agents.position[self.agent]);
@@ -284,7 +270,9 @@ impl Chooser<'_> {
             let shortest = lengths.filter(|length| length.is_finite()).reduce(f64::min);
             shortest.unwrap_or(0.0)
         });
-        let [walking, waiting] = [length / speed, f64::from(ahead) / flow];
+        let by_time = || self.crowd.time_to(self.scene, self.agent, place);
+        let walking = by_time().unwrap_or(length / speed);
+        let waiting = f64::from(ahead) / flow;
         let onward = onward / speed;
         Expected {
             walking_secs: walking,
@@ -296,40 +284,17 @@ impl Chooser<'_> {
         }
     }
 
-    /// The flow that an agent expects through a place, P/s. For an exit with a crowd before it, this is the flow
-    /// observed there. An exit without a crowd is below its capacity: its flow follows from the largest flow per meter
-    /// observed at any exit.
+    /// The flow that an agent expects through a place, P/s.
     fn flow(&self, place: &Place, state: &PlaceState) -> f64 {
         let most = match &place.kind {
             Kind::Exit(exit) => exit.most_per_sec.unwrap_or(f64::INFINITY),
-            Kind::Line(_) => f64::INFINITY,
+            Kind::Line(_) | Kind::Door(_) => f64::INFINITY,
             Kind::Queue(queue) => return f64::from(queue.servers) / queue.mean_service,
             Kind::Disk { .. } | Kind::Waiting(_) => return f64::INFINITY,
         };
-        let width = place.line().map_or(0.0, |[a, b]| (b - a).norm());
-        let crowd = CROWD * BEFORE * (width + BEFORE);
-        if f64::from(state.nearer_than(BEFORE)) >= crowd
-            && let Some(flow) = self.observed(state)
-        {
-            return flow.max(LEAST_FLOW);
-        }
-        let places = self.scene.journeys.places.iter();
-        let states = places.zip(&self.crowd.progress.places);
-        let flows = states.filter_map(|(place, state)| {
-            let width = place.line().map(|[a, b]| (b - a).norm())?;
-            Some(self.observed(state)? / width)
-        });
-        let per_meter = flows.fold(FLOW_PER_METER, f64::max);
-        (per_meter * width).min(most)
-    }
-
-    /// The flow through a place during the last seconds, P/s, from the first of the agents that passed it in this time;
-    /// `None` if too few did.
-    fn observed(&self, state: &PlaceState) -> Option<f64> {
-        let clock = &self.crowd.clock;
-        let others = state.recent.len().checked_sub(1)?;
-        let since = clock.time() - clock.time_at(state.recent[0]);
-        (others >= FEWEST_OBSERVED && since > 0.0).then(|| others as f64 / since)
+        let per_meter = self.crowd.flow_per_meter();
+        let expected = per_meter * bound::width(place).unwrap_or(0.0);
+        state.stream.flow(expected.min(most)).min(most)
     }
 }
 

@@ -111,16 +111,18 @@ impl Crowd {
             }
             let trip = agents.trip.get(agent).and_then(Option::as_ref);
             let trip = trip.filter(|trip| trip.status == Status::Walking);
-            let own = trip.map_or(&[][..], |trip| {
+            let own = trip.into_iter().flat_map(|trip| {
                 let journey = &scene.journeys.journeys[usize::from(trip.journey)];
-                journey
-                    .stage(trip.stage)
-                    .passed(&trip.place, &scene.journeys.places)
+                let stage = journey.stage(trip.stage);
+                stage.passed(trip.place, &scene.journeys.places)
             });
-            let crossings = own.iter().chain(&closed).filter_map(|&place| {
+            let crossings = own.chain(closed.iter().copied()).filter_map(|place| {
                 let place = usize::from(place);
                 let line = scene.journeys.places[place].line()?;
                 let part = crossed([before[agent], to], line)?;
+                if self.lets_pass(scene, place, side(line[0], line[1], before[agent])) {
+                    return None;
+                }
                 Some(Crossing {
                     agent,
                     place,
@@ -183,17 +185,33 @@ impl Crowd {
         found
     }
 
+    /// Whether a place stops some agents, also those that are not bound for it.
     fn is_closed(&self, scene: &Scene, place: u16) -> bool {
-        let is_exit = scene.journeys.places[usize::from(place)].is_exit();
         let state = self.progress.places.get(usize::from(place));
-        is_exit && state.is_some_and(|state| !state.open)
+        let is_shut = state.is_some_and(|state| !state.open);
+        match &scene.journeys.places[usize::from(place)].kind {
+            Kind::Exit(_) => is_shut,
+            Kind::Door(door) => is_shut || door.one_way,
+            _ => false,
+        }
+    }
+
+    /// Whether an open one-way door lets agents pass that come from this side, which is positive on its left.
+    fn lets_pass(&self, scene: &Scene, place: usize, from: f64) -> bool {
+        let is_door = matches!(scene.journeys.places[place].kind, Kind::Door(_));
+        is_door && self.progress.places[place].open && from > 0.0
     }
 
     fn pass(&mut self, scene: &Scene, before: &[Vector], crossings: &[Crossing]) {
         let mut leaving = Vec::new();
         for crossing in crossings {
             let i = crossing.agent;
-            let Kind::Exit(exit) = &scene.journeys.places[crossing.place].kind else {
+            let kind = &scene.journeys.places[crossing.place].kind;
+            if matches!(kind, Kind::Door(_)) {
+                self.hold_back(before[i], crossing);
+                continue;
+            }
+            let Kind::Exit(exit) = kind else {
                 self.take_place(i, crossing.place);
                 self.go_on(scene, i);
                 continue;
@@ -247,7 +265,7 @@ impl Crowd {
                 continue;
             };
             let state = &mut self.progress.places[usize::from(trip.place)];
-            state.pass(&self.clock, scene);
+            state.pass();
             let group = usize::from(self.agents.group[i]);
             self.outcome.arrivals.push(Arrival {
                 id: self.agents.id[i],

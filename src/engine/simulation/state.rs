@@ -117,6 +117,10 @@ impl State {
                 let ways = scene.ways.as_ref();
                 ways.is_none_or(|ways| ways.knows(route))
             })
+            && agents.plan.iter().flatten().all(|plan| {
+                let ways = scene.ways.as_ref();
+                ways.is_none_or(|ways| plan.fits(ways))
+            })
             && agents
                 .trip
                 .iter()

@@ -5,7 +5,7 @@ use rand::distr::Open01;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::bound;
+use super::bound::{self, Stream};
 use super::choice::Chooser;
 use super::{Crowd, EventKind, Simulation, Stage};
 use crate::engine::clock::Clock;
@@ -26,6 +26,12 @@ pub struct Progress {
     pub outside: u32,
     /// The number of changes of places so far.
     changes: usize,
+    /// The agents bound for each step through the openings of rooms.
+    pub steps: Vec<Stream>,
+    /// For each path map, the expected times from each step to its goal, seconds; empty if no agent walks there.
+    pub(super) onward: Vec<Vec<f64>>,
+    /// The largest flow per meter of all lines when they were last observed, P/(m s).
+    pub(super) per_meter: f64,
 }
 
 /// The state of a place.
@@ -39,12 +45,10 @@ pub struct PlaceState {
     pub passed: u32,
     /// The total time that agents have waited here, seconds.
     pub waited: f64,
-    /// The frames in which agents passed it during the last seconds.
-    pub(super) recent: Vec<u64>,
+    /// The agents bound for it, and those that have passed it.
+    pub stream: Stream,
     /// When the next agent may pass, seconds.
     pub(super) ready: f64,
-    /// `nearer[k]` is the number of agents bound for it that are nearer than k half meters.
-    pub(super) nearer: Vec<u32>,
     /// The number of tickets given out for its queue.
     pub(super) tickets: u32,
     /// The largest number of agents that have stood in its queue at once.
@@ -60,9 +64,8 @@ impl Default for PlaceState {
             bound: 0,
             passed: 0,
             waited: 0.0,
-            recent: Vec::new(),
+            stream: Stream::default(),
             ready: 0.0,
-            nearer: Vec::new(),
             tickets: 0,
             longest: 0,
             taken: Vec::new(),
@@ -72,13 +75,10 @@ impl Default for PlaceState {
 
 impl PlaceState {
     /// Records that an agent that was bound for this place passes it.
-    pub(super) fn pass(&mut self, clock: &Clock, scene: &Scene) {
+    pub(super) fn pass(&mut self) {
         self.bound = self.bound.saturating_sub(1);
         self.passed += 1;
-        // Only agents that choose the quickest place read the flow.
-        if scene.journeys.has_quickest() {
-            self.recent.push(clock.frame());
-        }
+        self.stream.pass();
     }
 
     /// Takes the first free one of `spots`, or the free one nearest to a point, and returns its index; if none is free,
@@ -252,7 +252,7 @@ impl Crowd {
                     state.bound.saturating_sub(1)
                 };
                 if let Some(lengths) = &lengths {
-                    state.count(lengths[k], comes);
+                    state.stream.count(lengths[k], comes);
                 }
             }
             trip.place = place;
@@ -271,7 +271,7 @@ impl Crowd {
             return;
         };
         let state = &mut self.progress.places[usize::from(trip.place)];
-        state.pass(&self.clock, scene);
+        state.pass();
         let stages = &scene.journeys.journeys[usize::from(trip.journey)].stages;
         trip.status = Status::Finished;
         trip.chooses_at = u64::MAX;
@@ -294,7 +294,7 @@ impl Crowd {
             Status::Walking => {
                 trip.chooses_at <= frame
                     || match &scene.journeys.places[usize::from(trip.place)].kind {
-                        Kind::Exit(_) | Kind::Line(_) => false,
+                        Kind::Exit(_) | Kind::Line(_) | Kind::Door(_) => false,
                         Kind::Disk { at, within } => (position - at).norm() <= *within,
                         Kind::Waiting(waiting) => waiting.area.contains(position),
                         Kind::Queue(_) => true,

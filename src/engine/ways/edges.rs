@@ -60,6 +60,15 @@ impl Edges {
         self.walls.iter().copied().chain(closed).collect()
     }
 
+    /// Closes lines, which may end in walls or beyond them.
+    pub fn draw(&mut self, lines: &[[Vector; 2]]) {
+        for line in lines {
+            let first = self.points.len();
+            self.points.extend(line);
+            self.closed.insert([first, first + 1]);
+        }
+    }
+
     /// Closes passages. Where one ends inside of a wall, the wall gets a point.
     pub fn close(&mut self, passages: &[Narrow]) {
         let mut cuts: HashMap<Edge, Vec<usize>> = HashMap::new();

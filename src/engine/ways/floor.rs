@@ -40,7 +40,11 @@ impl Floor {
     /// # Errors
     /// As [`Mesh::new`].
     pub fn new(areas: &[Area], least_width: f64) -> Result<Self, WayError> {
-        let mesh = Mesh::new(areas, least_width)?;
+        Ok(Self::of(Mesh::new(areas, least_width)?, least_width))
+    }
+
+    /// Prepares a triangulation whose narrower passages are closed already.
+    pub fn of(mesh: Mesh, least_width: f64) -> Self {
         let corners = Corner::all(&mesh, least_width);
         let mut at = vec![[None; 3]; mesh.triangles().len()];
         for (c, corner) in corners.iter().enumerate() {
@@ -58,7 +62,7 @@ impl Floor {
             at,
         };
         floor.find_ways();
-        Ok(floor)
+        floor
     }
 
     /// Finds the straight ways between all corners.

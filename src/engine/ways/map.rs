@@ -102,6 +102,16 @@ impl PathMap {
     /// # Errors
     /// A goal is not on the floor.
     pub fn new(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
+        let mut map = Self::within(floor, goals, margin)?;
+        map.find_ways_out(floor);
+        Ok(map)
+    }
+
+    /// The map of one or more goals as in [`new`](Self::new), without ways through closed passages.
+    ///
+    /// # Errors
+    /// A goal is not on the floor.
+    pub fn within(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
         let mut seen = Seen::new(floor, goals, margin)?;
         spread(floor, &mut seen.targets);
         let Seen { mut targets, views } = seen;
@@ -109,14 +119,12 @@ impl PathMap {
         let entries = Entries::new(floor, &targets, views);
         let building = entries.bytes();
         let parts = Parts::new(floor, &targets, entries.of_triangles());
-        let mut map = Self {
+        Ok(Self {
             targets,
             parts,
             out: Vec::new(),
             building,
-        };
-        map.find_ways_out(floor);
-        Ok(map)
+        })
     }
 
     /// Finds ways out of triangles without entries, through any opening.

@@ -8,7 +8,7 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use super::WayError;
 use super::edges::Edges;
 use super::expansion::Border;
-use super::narrow::narrow;
+use super::narrow::{Narrow, narrow};
 use crate::engine::geometry::Area;
 use crate::engine::math::Vector;
 
@@ -51,6 +51,22 @@ impl Mesh {
             return Ok(open);
         }
         edges.close(&closed);
+        Self::of(&mut edges)
+    }
+
+    /// Triangulates areas that share at most points. `passages` of their triangulation without closed passages, and
+    /// `lines`, are sides of triangles that ways do not cross.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn divided(
+        areas: &[Area],
+        passages: &[Narrow],
+        lines: &[[Vector; 2]],
+    ) -> Result<Self, WayError> {
+        let mut edges = Edges::of(areas);
+        edges.close(passages);
+        edges.draw(lines);
         Self::of(&mut edges)
     }
 

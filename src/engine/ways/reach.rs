@@ -12,7 +12,13 @@ impl Ways {
 
     /// Whether a way from `p` to a destination is nowhere narrower than the floor's least width.
     pub fn is_open(&self, p: Vector, to: Destination) -> bool {
-        self.open_way(p, to).is_some()
+        let is_allowed = || match (&self.rooms, self.map_to(to)) {
+            (Some(rooms), Some(goal)) if rooms.has_one_way() => {
+                rooms.length(p, usize::from(goal)).is_finite()
+            }
+            _ => true,
+        };
+        self.open_way(p, to).is_some() && is_allowed()
     }
 
     /// The lengths of the ways from `p` to some places, meters; infinite if every way is somewhere narrower than the
@@ -24,10 +30,17 @@ impl Ways {
             .map(|&place| self.way(p, Destination::Place(place)));
         let ways: Vec<Option<Way>> = ways.collect();
         let is_narrow_here = !ways.iter().flatten().any(Way::is_wide);
-        let known = ways.into_iter();
-        let known = known.map(|way| way.filter(|way| is_narrow_here || way.is_wide()));
+        let rooms = self.rooms.as_ref().filter(|rooms| rooms.has_one_way());
+        let known = ways.into_iter().zip(places);
+        let length = |(way, &place): (Option<Way>, &u16)| {
+            let way = way.filter(|way| is_narrow_here || way.is_wide())?;
+            Some(match rooms {
+                Some(rooms) => rooms.length(p, usize::from(place)),
+                None => way.length,
+            })
+        };
         known
-            .map(|way| way.map_or(f64::INFINITY, |way| way.length))
+            .map(|known| length(known).unwrap_or(f64::INFINITY))
             .collect()
     }
 }

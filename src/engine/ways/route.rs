@@ -7,6 +7,7 @@ use super::corner::Bend;
 use super::floor::Floor;
 use super::goal::Goal;
 use super::map::{Next, PathMap, SLACK, Way};
+use super::rooms::{Rooms, Step};
 use super::steer::{End, around, between_borders};
 use super::targets::Source;
 use super::{MOST_GOALS, WayError};
@@ -36,6 +37,28 @@ pub struct Ways {
     /// The number of goals given at the start; the others were added later.
     first_goals: usize,
     pub(super) maps: Vec<PathMap>,
+    /// The rooms of the floor, for ways by time and through doors.
+    pub rooms: Option<Rooms>,
+}
+
+/// Another way than the shortest one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Detour {
+    /// Through the opening of this step, which leads out of the room.
+    Opening(Step),
+    /// To the goal without leaving the room.
+    Room,
+}
+
+/// The path map that a route follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+enum Chart {
+    /// That of the goal with this number on the whole floor.
+    Floor(u16),
+    /// That of the opening of this step.
+    Opening(Step),
+    /// That of the goal with this number inside of its room.
+    Room(u16),
 }
 
 /// What an agent walks to.
@@ -60,8 +83,8 @@ pub struct Route {
     entry: u32,
     /// At `found`, the length of the way exceeded that of the shortest by at most this, meters.
     excess: f64,
-    /// The number of its path map; `None`: straight to its goal.
-    map: Option<u16>,
+    /// Its path map; `None`: straight to its goal.
+    chart: Option<Chart>,
     /// What comes first.
     first: First,
     /// The length of the way, meters; infinite without a path map.
@@ -94,6 +117,8 @@ pub struct Walker {
     pub to: Destination,
     /// Its radius, meters.
     pub radius: f64,
+    /// The way there, if it is not the shortest.
+    pub detour: Option<Detour>,
 }
 
 impl Ways {
@@ -113,6 +138,7 @@ impl Ways {
             first_goals: goals.len(),
             goals,
             maps,
+            rooms: None,
         })
     }
 
@@ -128,7 +154,11 @@ impl Ways {
         let map = PathMap::new(&self.floor, &[Goal::Point(goal)], LINE_MARGIN)?;
         let mut added = self.first_goals..self.goals.len();
         let is_full = added.len() >= MOST_GOALS;
-        match added.find(|&k| !is_used(self.goals[k])) {
+        let unused = added.find(|&k| !is_used(self.goals[k]));
+        if let Some(rooms) = self.rooms.as_mut().filter(|_| unused.is_some() || !is_full) {
+            rooms.add_goal(&[Goal::Point(goal)], unused.map(|k| self.places + k))?;
+        }
+        match unused {
             Some(k) => {
                 self.goals[k] = goal;
                 self.maps[self.places + k] = map;
@@ -150,14 +180,43 @@ impl Ways {
 
     /// Whether the corner, the triangle and the map of `route` exist.
     pub fn knows(&self, route: &Route) -> bool {
-        let corners = self.floor.corners.len();
+        let floor = self.floor_of(route);
         let is_known = match route.first {
-            First::Corner(bend) => (bend.corner as usize) < corners,
+            First::Corner(bend) => (bend.corner as usize) < floor.corners.len(),
             First::End(_) | First::Out(_) => true,
         };
-        let is_known = is_known && (route.triangle as usize) < self.floor.mesh.triangles().len();
-        let maps = self.maps.len();
-        is_known && route.map.is_none_or(|map| usize::from(map) < maps)
+        let is_known = is_known && (route.triangle as usize) < floor.mesh.triangles().len();
+        is_known && route.chart.is_none_or(|chart| self.on(chart).is_some())
+    }
+
+    /// The path map of a chart, and the floor on which it lies.
+    fn on(&self, chart: Chart) -> Option<(&Floor, &PathMap)> {
+        let rooms = self.rooms.as_ref();
+        match chart {
+            Chart::Floor(map) => Some((&self.floor, self.maps.get(usize::from(map))?)),
+            Chart::Opening(step) => rooms
+                .filter(|rooms| step < rooms.steps())
+                .map(|rooms| (&rooms.floor, rooms.map(step))),
+            Chart::Room(goal) => {
+                rooms.and_then(|rooms| Some((&rooms.floor, rooms.goal(usize::from(goal))?)))
+            }
+        }
+    }
+
+    /// The chart of a walker.
+    fn chart(&self, walker: &Walker) -> Option<Chart> {
+        let map = self.map_to(walker.to)?;
+        Some(match walker.detour {
+            None => Chart::Floor(map),
+            Some(Detour::Opening(step)) => Chart::Opening(step),
+            Some(Detour::Room) => Chart::Room(map),
+        })
+    }
+
+    /// The floor of a route.
+    fn floor_of(&self, route: &Route) -> &Floor {
+        let on = route.chart.and_then(|chart| self.on(chart));
+        on.map_or(&self.floor, |(floor, _)| floor)
     }
 
     /// Whether some way bends, because a wall or a closed passage hides its goal.
@@ -165,7 +224,8 @@ impl Ways {
         self.maps.iter().any(PathMap::bends)
     }
 
-    pub(super) fn map_to(&self, to: Destination) -> Option<u16> {
+    /// The number of the path map to a destination.
+    pub fn map_to(&self, to: Destination) -> Option<u16> {
         let map = match to {
             Destination::Place(place) => {
                 return (usize::from(place) < self.places).then_some(place);
@@ -192,7 +252,7 @@ impl Ways {
                 triangle: 0,
                 entry: u32::MAX,
                 excess: 0.0,
-                map: self.map_to(walker.to),
+                chart: self.chart(walker),
                 first: First::End(p),
                 length: f64::INFINITY,
                 clearance: walker.radius + random.random_range(low..=high),
@@ -215,14 +275,15 @@ impl Ways {
             Next::Goal(point) => First::End(point),
             Next::Out(point) => First::Out(point),
         };
-        let place = way.next.place(&self.floor);
+        let floor = self.floor_of(route);
+        let place = way.next.place(floor);
         let way_around = match way.next {
             Next::Corner { bend, borders } => {
                 let (at, corner) = ((p, way.distance), (bend, borders));
-                Some(around(&self.floor, at, corner, route.clearance))
+                Some(around(floor, at, corner, route.clearance))
             }
             Next::Goal(end) => {
-                let map = route.map.map(|map| &self.maps[usize::from(map)]);
+                let map = route.chart.and_then(|chart| self.on(chart)).map(|(_, map)| map);
                 let source = map.and_then(|map| map.source(way.entry));
                 // Agents that see a goal point from their start, or have a goal line in front of them, walk straight if
                 // their bodies fit. They pass the end of a line like the jamb of a door.
@@ -233,7 +294,7 @@ impl Ways {
                 };
                 let least = walker.radius + CLEARANCE[0];
                 let gap = if rounds { route.clearance } else { least };
-                let borders = map.and_then(|map| map.borders(&self.floor, way.entry));
+                let borders = map.and_then(|map| map.borders(floor, way.entry));
                 let end = End {
                     point: end,
                     distance: way.distance,
@@ -255,7 +316,7 @@ impl Ways {
     /// The way from `p` for an agent on `route`. The agent keeps its entry as long as the entry holds at `p` and its
     /// way is certainly at most [`SLACK`] longer than the shortest.
     fn go_on(&self, route: &mut Route, p: Vector) -> Option<Way> {
-        let (floor, map) = (&self.floor, &self.maps[usize::from(route.map?)]);
+        let (floor, map) = self.on(route.chart?)?;
         if let Some(way) = map.way_over(floor, p, route.entry as usize) {
             // Moving shortened the shortest way by at most the distance moved.
             let excess = route.excess + way.length - route.length + (p - route.found).norm();
@@ -264,7 +325,7 @@ impl Ways {
                 return Some(way);
             }
         }
-        let held = self.first(route).bend();
+        let held = first(floor, route).bend();
         let here = floor.locate_from(route.triangle, p);
         let here = here.or_else(|| floor.nearest(p))?;
         let way = map.way(floor, p, here, held)?;
@@ -305,61 +366,66 @@ impl Ways {
     /// The points of the shortest way from `p`, meters: its corners in order, then its end. Empty if there is no way.
     pub fn course(&self, p: Vector, to: Destination) -> Vec<Vector> {
         let first = self.map_to(to).zip(self.way(p, to));
-        first.map_or(Vec::new(), |(map, way)| self.points(map, way.next))
+        first.map_or(Vec::new(), |(map, way)| {
+            points(&self.floor, &self.maps[usize::from(map)], way.next)
+        })
     }
 
-    /// The points of the rest of a route, as in [`course`](Self::course).
+    /// The points of the rest of a route, as in [`course`](Self::course); of a detour, those up to its opening.
     pub fn course_of(&self, route: &Route) -> Vec<Vector> {
-        match route.map {
-            Some(map) => self.points(map, self.first(route)),
+        match route.chart.and_then(|chart| self.on(chart)) {
+            Some((floor, map)) => points(floor, map, first(floor, route)),
             None => vec![self.next(route)],
         }
     }
 
-    fn points(&self, map: u16, first: Next) -> Vec<Vector> {
-        let (number, map) = (map, &self.maps[usize::from(map)]);
-        let (mut points, mut next) = (Vec::new(), Some(first));
-        while let Some(now) = next.take_if(|_| points.len() < MOST_POINTS) {
-            match now {
-                Next::Goal(point) => points.push(point),
-                Next::Corner { bend, .. } => {
-                    let bends = std::iter::successors(Some(bend), |bend| map.after(*bend));
-                    let bends: Vec<_> = bends.take(MOST_POINTS).collect();
-                    points.extend(bends.iter().map(|&bend| self.floor.place(bend)));
-                    let last = bends.last();
-                    points.extend(last.and_then(|&bend| map.end_after(&self.floor, bend)));
-                }
-                Next::Out(point) => {
-                    points.push(point);
-                    next = self.from(number, point).map(|way| way.next);
-                }
-            }
-        }
-        points
-    }
-
     /// The point that an agent on `route` walks to next, meters: a corner or its goal.
     pub fn next(&self, route: &Route) -> Vector {
-        self.first(route).place(&self.floor)
-    }
-
-    fn first(&self, route: &Route) -> Next {
-        match route.first {
-            First::Corner(bend) => Next::Corner {
-                bend,
-                borders: [self.floor.place(bend); 2],
-            },
-            First::End(point) => Next::Goal(point),
-            First::Out(point) => Next::Out(point),
-        }
+        let floor = self.floor_of(route);
+        first(floor, route).place(floor)
     }
 
     /// The memory of the floor and the maps, and of building the largest, bytes.
     pub fn bytes(&self) -> usize {
         let maps = self.maps.iter().map(PathMap::bytes);
         let building = self.maps.iter().map(PathMap::building_bytes).max();
-        self.floor.bytes() + maps.sum::<usize>() + building.unwrap_or_default()
+        let rooms = self.rooms.as_ref().map_or(0, Rooms::bytes);
+        self.floor.bytes() + maps.sum::<usize>() + building.unwrap_or_default() + rooms
     }
+}
+
+/// What comes first on a route over this floor.
+fn first(floor: &Floor, route: &Route) -> Next {
+    match route.first {
+        First::Corner(bend) => Next::Corner {
+            bend,
+            borders: [floor.place(bend); 2],
+        },
+        First::End(point) => Next::Goal(point),
+        First::Out(point) => Next::Out(point),
+    }
+}
+
+/// The points of the way that begins with `first`, meters.
+pub(super) fn points(floor: &Floor, map: &PathMap, first: Next) -> Vec<Vector> {
+    let (mut points, mut next) = (Vec::new(), Some(first));
+    while let Some(now) = next.take_if(|_| points.len() < MOST_POINTS) {
+        match now {
+            Next::Goal(point) => points.push(point),
+            Next::Corner { bend, .. } => {
+                let bends = std::iter::successors(Some(bend), |bend| map.after(*bend));
+                let bends: Vec<_> = bends.take(MOST_POINTS).collect();
+                points.extend(bends.iter().map(|&bend| floor.place(bend)));
+                let last = bends.last();
+                points.extend(last.and_then(|&bend| map.end_after(floor, bend)));
+            }
+            Next::Out(point) => {
+                points.push(point);
+                next = map.way_from(floor, point).map(|way| way.next);
+            }
+        }
+    }
+    points
 }
 
 impl Route {

@@ -7,7 +7,7 @@ use crate::analysis::way_field::{Grid, WayField};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::simulation::Simulation;
 use crate::engine::ways::{Destination, Ways};
-use crate::output::colors::{ColorMap, Rgb};
+use crate::output::colors::{ColorMap, Rgb, WAIT};
 use crate::output::plot::{BLACK, Cells, ColorBar, Mark, Style};
 
 /// The side of a cell of the field, points.
@@ -20,6 +20,8 @@ const WAYS: usize = 12;
 const CANDIDATES: usize = 2000;
 /// The distance between arrows, points.
 const ARROWS: f64 = 34.0;
+/// Shorter waits before openings are not shown, seconds.
+const LEAST_WAIT: f64 = 5.0;
 /// The color of arrows.
 const ARROW: Rgb = [90, 110, 120];
 
@@ -33,6 +35,8 @@ pub struct Paths {
     pub to: Destination,
     /// The number of the place in the scene, if it is one.
     pub place: Option<u16>,
+    /// Whether the scene has a path map to the destination.
+    pub is_known: bool,
 }
 
 /// The marks of some ways.
@@ -72,10 +76,18 @@ impl Paths {
         let corners = Mark::dots(corners.map(xy), Style::full(BORDER, 1.7, ""));
         let mut lines = self.arrows(frame);
         let starts = self.starts(simulation);
-        lines.extend(starts.iter().flat_map(|&start| self.way(start, frame)));
+        let by_time = simulation.scene().rooms().is_some() && self.is_known;
+        let course = |start: Vector| match by_time {
+            true => simulation.course(start, self.to),
+            false => self.ways.course(start, self.to),
+        };
+        let drawn = starts.iter();
+        lines.extend(drawn.flat_map(|&start| way(start, course(start), frame)));
         lines.push(corners);
+        lines.extend(waits(simulation));
+        let by = if by_time { " by time" } else { "" };
         Drawn {
-            title: format!("Ways to {}", self.name),
+            title: format!("Ways to {}{by}", self.name),
             field: vec![cells(field.lengths, map.clone()), borders],
             lines,
             bar: bar(&map),
@@ -111,19 +123,6 @@ impl Paths {
         far_apart(&from)
     }
 
-    /// The way of one agent, with an arrowhead at its end.
-    fn way(&self, start: Vector, frame: &Frame) -> Vec<Mark> {
-        let mut points = vec![start];
-        points.extend(self.ways.course(start, self.to));
-        let last = points
-            .windows(2)
-            .rfind(|pair| (pair[1] - pair[0]).norm() > 0.0);
-        let head = last.map(|pair| head([pair[0], pair[1]], frame.meters(5.0), BLACK));
-        let line = Mark::line(points.into_iter().map(xy), Style::full(BLACK, 0.9, ""));
-        let start = Mark::dots([xy(start)], Style::full(BLACK, 1.8, ""));
-        [line, start].into_iter().chain(head).collect()
-    }
-
     /// Arrows in the direction of the next corner, at the points of a grid.
     fn arrows(&self, frame: &Frame) -> Vec<Mark> {
         let grid = Grid::over([frame.min, frame.max], frame.meters(ARROWS));
@@ -140,6 +139,32 @@ impl Paths {
         };
         on_floor.filter_map(arrow).flatten().collect()
     }
+}
+
+/// The way of one agent over `course`, with an arrowhead at its end.
+fn way(start: Vector, course: Vec<Vector>, frame: &Frame) -> Vec<Mark> {
+    let mut points = vec![start];
+    points.extend(course);
+    let last = points
+        .windows(2)
+        .rfind(|pair| (pair[1] - pair[0]).norm() > 0.0);
+    let head = last.map(|pair| head([pair[0], pair[1]], frame.meters(5.0), BLACK));
+    let line = Mark::line(points.into_iter().map(xy), Style::full(BLACK, 0.9, ""));
+    let start = Mark::dots([xy(start)], Style::full(BLACK, 1.8, ""));
+    [line, start].into_iter().chain(head).collect()
+}
+
+/// The openings before which agents wait for a while, in the colors of recordings.
+fn waits(simulation: &Simulation) -> Vec<Mark> {
+    let openings = simulation.scene().rooms().map_or(&[][..], |rooms| rooms.openings());
+    let waits = openings.iter().zip(simulation.waits());
+    let long = waits.filter(|(_, wait)| *wait >= LEAST_WAIT);
+    let marks = long.flat_map(|(opening, wait)| {
+        let style = Style::full(WAIT.color(wait as f32), 2.6, "");
+        let pieces = opening.pieces().iter();
+        pieces.map(move |ends| Mark::line(ends.map(xy), style.clone()))
+    });
+    marks.collect()
 }
 
 /// The head of an arrow.

@@ -126,10 +126,12 @@ pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark
         let lines: Vec<Vector> = scenery::lines(place);
         let progress = picture.simulation.map(|simulation| simulation.progress());
         let state = progress.and_then(|progress| progress.places.get(k));
-        let is_closed = place.is_exit() && state.is_some_and(|state| !state.open);
+        let can_close = matches!(place.kind, Kind::Exit(_) | Kind::Door(_));
+        let is_closed = can_close && state.is_some_and(|state| !state.open);
         let style = match &place.kind {
-            Kind::Exit(_) if is_closed => Style::full(CLOSED, 3.4, ""),
+            Kind::Exit(_) | Kind::Door(_) if is_closed => Style::full(CLOSED, 3.4, ""),
             Kind::Exit(_) => Style::full(color, 3.4, ""),
+            Kind::Door(_) => Style::full(color, 2.2, ""),
             Kind::Line(_) | Kind::Disk { .. } => Style::broken(color, 1.6, ""),
             Kind::Waiting(_) => Style::full(color, 1.2, ""),
             Kind::Queue(_) => Style::full(color, 1.0, ""),

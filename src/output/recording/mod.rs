@@ -13,6 +13,7 @@
 //! | `world/geometry/{sources,pushes,measured}` | outlines, static |
 //! | `world/legend/{density,speed}` | color bars, static |
 //! | `world/wall_forces` | walls colored by the force on them, if the run measures it |
+//! | `world/waits` | openings colored by the time that the last agent bound for them waits, if ways are chosen by time |
 //! | `world/ways/…` | the lengths of the ways to each place and goal as an image, hidden at first |
 //! | `world/agents` | the crowd: positions, radii, density and speed colors, `agent:…` values |
 //! | `world/debug/…` | the debug agents: kernels, hidden regions, wall points, forces, ways |
@@ -60,7 +61,8 @@ use crate::output::scenery;
 use debug::focus::Focus;
 use debug::follow::{Follow, Moment};
 use debug::{arrows, layers, moment};
-use frame::{Snapshot, stats, wall_forces};
+use frame::colored_lines::{self, WAITS, WALL_FORCES};
+use frame::{Snapshot, stats};
 use layout::{Content, Kind};
 use scene::{obstacles, ways};
 use session::{Debug, Session};
@@ -107,7 +109,10 @@ impl Recorder {
             scene::log(stream, simulation, options)?;
             stats::log_places(stream, scene)?;
             if options.body_mass.is_some() {
-                wall_forces::log_style(stream)?;
+                WALL_FORCES.log_style(stream)?;
+            }
+            if scene.by_time() && scene.rooms().is_some() {
+                WAITS.log_style(stream)?;
             }
             let terms = arrows::acting(scene);
             let focuses = names.iter();
@@ -124,6 +129,7 @@ impl Recorder {
             has_waiting: stats::has_waiting(scene),
             fields: ways::entities(scene),
             has_wall_forces: options.body_mass.is_some(),
+            has_waits: scene.by_time() && scene.rooms().is_some(),
             followed: names.clone(),
             ..Content::new(kind, obstacles::has_outside(scene.walls.obstacles()))
         };
@@ -160,7 +166,7 @@ impl Recorder {
         let mut snapshot = Snapshot::of(simulation, &options.debug, &self.follow.ids());
         snapshot.ms_per_frame = Some(ms_per_frame);
         if let (Some(outlines), Some(mass)) = (&self.outlines, options.body_mass) {
-            snapshot.wall_forces = Some(wall_forces::parts(outlines, simulation, mass));
+            snapshot.wall_forces = Some(colored_lines::wall_forces(outlines, simulation, mass));
         }
         snapshot.events = self.events.new_lines(simulation);
         snapshot.evacuated = Some(self.events.evacuated);

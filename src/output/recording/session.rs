@@ -9,9 +9,10 @@ use rerun::RecordingStream;
 use super::debug::focus::Focus;
 use super::debug::layers::Layer;
 use super::error::{Cause, GONE, RecordingError};
+use super::frame::colored_lines::{WAITS, WALL_FORCES};
 use super::frame::crowd::{self, Crowd, Maps};
 use super::frame::events;
-use super::frame::{Snapshot, set_time, stats, wall_forces};
+use super::frame::{Snapshot, set_time, stats};
 use super::layout::{Content, Opening, blueprint};
 use super::options::RecordingOptions;
 use super::scene::bars;
@@ -167,7 +168,10 @@ fn write_all(
         set_time(stream, snapshot.frame, snapshot.time);
         crowd.log(stream, &snapshot)?;
         if let Some(parts) = &snapshot.wall_forces {
-            wall_forces::log(stream, parts)?;
+            WALL_FORCES.log(stream, parts)?;
+        }
+        if let Some(parts) = &snapshot.waits {
+            WAITS.log(stream, parts)?;
         }
         for layer in &mut debug.layers {
             layer.log(stream, &snapshot.open)?;

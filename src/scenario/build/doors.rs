@@ -19,18 +19,36 @@ const BESIDE: f64 = 0.1;
 const NEAR: f64 = 0.02;
 /// A note says how much of a line is off the floor if it is more than this part.
 const MUCH: f64 = 0.1;
+/// A door ends at a wall that is at most this many steps away.
+const AT_WALL: u32 = 5;
 /// The number of bisections that find the end of the floor between two points.
 const HALVINGS: u32 = 20;
 
-/// Checks that each exit of `places`, which come first, has a part on the floor that is wide enough for a person.
+/// Checks that each exit and each door has a part on the floor that is wide enough for a person, and that doors end
+/// at walls.
 pub fn check(places: &[Place], floor: &Floor) -> Result<(), Problem> {
-    for (k, place) in places.iter().enumerate() {
-        let Kind::Exit(exit) = &place.kind else {
-            continue;
+    let [mut exits, mut doors] = [0, 0];
+    for place in places {
+        let (list, ends, count) = match &place.kind {
+            Kind::Exit(exit) => ("exits", exit.line, &mut exits),
+            Kind::Door(door) => ("doors", door.line, &mut doors),
+            _ => continue,
         };
-        let line = Line::new(floor, exit.line);
+        let k = *count;
+        *count += 1;
+        let line = Line::new(floor, ends);
         if line.is_passable() {
-            continue;
+            match line.open_end().filter(|_| list == "doors") {
+                None => continue,
+                Some([x, y]) => {
+                    let name = shown(&place.name);
+                    let reason = format!(
+                        "people can walk around `{name}`: it ends at ({x}, {y}), not at a wall; draw it from wall to \
+                         wall"
+                    );
+                    return Err(Problem::new(format!("{list}[{k}].line"), reason));
+                }
+            }
         }
         let name = shown(&place.name);
         let reason = match line.end_of_floor() {
@@ -45,7 +63,7 @@ pub fn check(places: &[Place], floor: &Floor) -> Result<(), Problem> {
                 "`{name}` lies in an obstacle or outside of the walkable area; move it onto the floor"
             ),
         };
-        return Err(Problem::new(format!("exits[{k}].line"), reason));
+        return Err(Problem::new(format!("{list}[{k}].line"), reason));
     }
     Ok(())
 }
@@ -107,6 +125,21 @@ impl<'a> Line<'a> {
             let beside = self.at(step) + self.normal * (sign * distance);
             self.floor.locate(beside).is_some()
         })
+    }
+
+    /// An end of it that lies on the floor and at no wall, meters, rounded to centimeters.
+    fn open_end(&self) -> Option<[f64; 2]> {
+        let along = direction(self.step);
+        let ends = [(0.0, -along), (f64::from(self.steps), along)];
+        let is_open = |&(end, away): &(f64, Vector)| {
+            (0..=AT_WALL).all(|k| {
+                let p = self.at(end) + away * (f64::from(k) * STEP);
+                self.floor.locate(p).is_some()
+            })
+        };
+        let (end, _) = ends.into_iter().find(is_open)?;
+        let p = self.at(end);
+        Some([p.x, p.y].map(to_centimeters))
     }
 
     fn is_at_floor(&self, step: f64) -> bool {

@@ -8,7 +8,7 @@ use crate::engine::journeys::Kind;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Group, Scene};
 use crate::engine::ways::nearest_on;
-use crate::scenario::build::journeys::TO_NEAREST_EXIT;
+use crate::scenario::build::journeys::TO_EXIT;
 use crate::scenario::error::quote::shown;
 use crate::scenario::file::File;
 use crate::scenario::keys::people::Spacing;
@@ -189,10 +189,12 @@ fn unused(scene: &Scene) -> Option<String> {
     let places: BTreeSet<u16> = stages.flat_map(|stage| stage.places.clone()).collect();
     let given = journeys.journeys.iter().enumerate();
     let given = given
-        .filter(|(k, journey)| !used.contains(&(*k as u16)) && journey.name != TO_NEAREST_EXIT);
+        .filter(|(k, journey)| !used.contains(&(*k as u16)) && !TO_EXIT.contains(&&*journey.name));
     let idle = given.map(|(_, journey)| format!("the journey `{}`", shown(&journey.name)));
     let others = journeys.places.iter().enumerate();
-    let others = others.filter(|(k, _)| !places.contains(&(*k as u16)));
+    let others = others.filter(|(k, place)| {
+        !places.contains(&(*k as u16)) && !matches!(place.kind, Kind::Door(_))
+    });
     let others =
         others.map(|(_, place)| format!("the {} `{}`", place.kind.name(), shown(&place.name)));
     let names: Vec<String> = idle.chain(others).collect();

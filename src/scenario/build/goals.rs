@@ -2,7 +2,7 @@
 
 use crate::engine::math::{Vector, direction};
 use crate::engine::scene::Goal;
-use crate::scenario::build::journeys::TO_NEAREST_EXIT;
+use crate::scenario::build::journeys::TO_EXIT;
 use crate::scenario::build::people::Population;
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::keys::goals::Aim;
@@ -88,7 +88,7 @@ impl Population<'_> {
             }
             Some(name) => journey_named(journeys, name).under("journey").map(Some),
             None if has_goal || self.file.goal.is_some() => Ok(None),
-            None => Ok(journey_named(journeys, TO_NEAREST_EXIT).ok()),
+            None => Ok(TO_EXIT.iter().find_map(|name| journey_named(journeys, name).ok())),
         }
     }
 

@@ -6,8 +6,9 @@ use crate::engine::geometry::Walls;
 use crate::engine::journeys::{
     Change, ChangeKind, Choice, Journey, JourneyStage, Journeys, Kind, Place,
 };
+use crate::engine::scene::RouteChoice;
 use crate::scenario::build::people::MOST_NUMBERED;
-use crate::scenario::build::places::{exit, queue, waypoint, zone};
+use crate::scenario::build::places::{door, exit, queue, waypoint, zone};
 use crate::scenario::build::waiting::waiting_area;
 use crate::scenario::error::quote::shown;
 use crate::scenario::error::{Problem, Under, suggestion};
@@ -17,8 +18,9 @@ use crate::scenario::floor_plan::Rings;
 use crate::scenario::keys::places;
 use crate::scenario::keys::places::Stage;
 
-/// The name of the journey of people without goal and journey in scenarios with exits.
-pub const TO_NEAREST_EXIT: &str = "nearest exit";
+/// The names of the journey of people without goal and journey in scenarios with exits, by the shortest and by the
+/// quickest way.
+pub const TO_EXIT: [&str; 2] = ["nearest exit", "quickest exit"];
 
 /// The places, journeys and zones of a file, among `walls`.
 ///
@@ -42,10 +44,15 @@ pub fn journeys(
     let exits = keys.exits.iter().map(|exit| found.numbers[&exit.name]);
     let exits: Vec<u16> = exits.collect();
     if !exits.is_empty() {
+        let [nearest, quickest] = TO_EXIT;
+        let (name, choice) = match keys.route_choice.unwrap_or_default() {
+            RouteChoice::Shortest => (nearest, Choice::Nearest),
+            RouteChoice::Quickest => (quickest, Choice::Quickest),
+        };
         found.journeys.journeys.push(Journey {
-            name: TO_NEAREST_EXIT.to_owned(),
+            name: name.to_owned(),
             stages: vec![JourneyStage {
-                choice: Choice::Nearest,
+                choice,
                 places: exits,
             }],
         });
@@ -89,6 +96,9 @@ impl Found<'_> {
             let queue = queue(given, self.walls);
             self.add("queues", k, &given.name, queue)?;
         }
+        for (k, given) in keys.doors.iter().enumerate() {
+            self.add("doors", k, &given.name, door(given))?;
+        }
         Ok(())
     }
 
@@ -126,7 +136,7 @@ impl Found<'_> {
             let near = suggestion(name, known.clone());
             let known: Vec<String> = known.map(|name| format!("`{name}`")).collect();
             let known = match known.as_slice() {
-                [] => "; the scenario has no exits, waypoints, waiting areas or queues".to_owned(),
+                [] => "; the scenario has no exits, waypoints, waiting areas, queues or doors".to_owned(),
                 names if near.is_empty() => format!("; there are {}", names.join(", ")),
                 _ => String::new(),
             };
@@ -135,9 +145,24 @@ impl Found<'_> {
         })
     }
 
+    /// The number of a place that people visit.
+    fn visited(&self, name: &str) -> Result<u16, Problem> {
+        let number = self.number(name)?;
+        match &self.journeys.places[usize::from(number)].kind {
+            Kind::Door(_) => {
+                let reason = format!(
+                    "`{}` is a door, which people pass on their way; give a waypoint with its line",
+                    shown(name)
+                );
+                Err(Problem::new("", reason))
+            }
+            _ => Ok(number),
+        }
+    }
+
     fn add_journey(&mut self, given: &places::Journey) -> Result<(), Problem> {
         let is_known = |journey: &Journey| journey.name == given.name;
-        if self.journeys.journeys.iter().any(is_known) || given.name == TO_NEAREST_EXIT {
+        if self.journeys.journeys.iter().any(is_known) || TO_EXIT.contains(&&*given.name) {
             let reason = format!(
                 "there are two journeys named `{}`; rename one",
                 shown(&given.name)
@@ -149,12 +174,15 @@ impl Found<'_> {
         let stages: Vec<JourneyStage> = stages.collect::<Result<_, _>>()?;
         let is_exit = |&place: &u16| self.journeys.places[usize::from(place)].is_exit();
         let early = stages.split_last().and_then(|(_, before)| {
-            before
-                .iter()
-                .position(|stage| stage.places.iter().any(is_exit))
+            before.iter().position(|stage| {
+                let leaves_some = matches!(stage.choice, Choice::Shares(_))
+                    && !stage.places.iter().all(is_exit);
+                stage.places.iter().any(is_exit) && !leaves_some
+            })
         });
         if let Some(k) = early {
-            let reason = "people leave at an exit, so it must be in the last stage";
+            let reason = "people leave at an exit, so it must be in the last stage; before it, some can leave: give \
+                          `shares` with an exit and other places";
             return Err(Problem::new(format!("stages[{k}]"), reason));
         }
         self.journeys.journeys.push(Journey {
@@ -169,7 +197,7 @@ impl Found<'_> {
             Stage::Place(name) => {
                 return Ok(JourneyStage {
                     choice: Choice::Nearest,
-                    places: vec![self.number(name)?],
+                    places: vec![self.visited(name)?],
                 });
             }
             Stage::Choice(choice) => choice,
@@ -206,7 +234,7 @@ impl Found<'_> {
         let mut places: Vec<u16> = Vec::new();
         for (k, name) in names.into_iter().enumerate() {
             let place = format!("{key}[{k}]");
-            let number = self.number(name).under(&place)?;
+            let number = self.visited(name).under(&place)?;
             if places.contains(&number) {
                 let reason = format!("`{}` is listed twice; remove one", shown(name));
                 return Err(Problem::new(place, reason));
@@ -219,12 +247,17 @@ impl Found<'_> {
     /// The changes of places by closing times and events.
     fn add_changes(&mut self, keys: &File) -> Result<(), Problem> {
         let mut changes = Vec::new();
-        for (k, exit) in keys.exits.iter().enumerate() {
-            let place = self.numbers[&exit.name];
-            for (n, &[from, until]) in exit.closed_secs.iter().enumerate() {
+        let exits = keys.exits.iter().enumerate();
+        let exits = exits.map(|(k, exit)| ("exits", k, &exit.name, &exit.closed_secs));
+        let doors = keys.doors.iter().enumerate();
+        let doors = doors.map(|(k, door)| ("doors", k, &door.name, &door.closed_secs));
+        for (list, k, name, closed_secs) in exits.chain(doors) {
+            let place = self.numbers[name];
+            for (n, &[from, until]) in closed_secs.iter().enumerate() {
                 if until <= from {
                     let reason = format!("it ends at {until} s, before it begins at {from} s");
-                    return Err(Problem::new(format!("exits[{k}].closed_secs[{n}]"), reason));
+                    let key = format!("{list}[{k}].closed_secs[{n}]");
+                    return Err(Problem::new(key, reason));
                 }
                 let kinds = [(from, ChangeKind::Close), (until, ChangeKind::Open)];
                 changes.extend(kinds.map(|(at, kind)| Change { at, place, kind }));
@@ -282,12 +315,13 @@ impl Found<'_> {
         let (fits, wanted) = match (&self.journeys.places[usize::from(place)].kind, kind) {
             (Kind::Waiting(_), _) => (kind == ChangeKind::Release, "a waiting area"),
             (Kind::Exit(_), _) => (kind != ChangeKind::Release, "an exit"),
+            (Kind::Door(_), _) => (kind != ChangeKind::Release, "a door"),
             (Kind::Queue(_), _) => (false, "a queue"),
             (Kind::Line(_) | Kind::Disk { .. }, _) => (false, "a waypoint"),
         };
         if !fits {
             let reason = format!(
-                "`{}` is {wanted}; exits can open and close, and waiting areas can be released",
+                "`{}` is {wanted}; exits and doors can open and close, and waiting areas can be released",
                 shown(name)
             );
             return Err(Problem::new(key, reason));

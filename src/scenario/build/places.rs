@@ -1,7 +1,7 @@
 //! Single exits, waypoints, queues and zones of a file → those of a scene.
 
 use crate::engine::geometry::{Ring, Walls};
-use crate::engine::journeys::{Exit, Kind, Queue, Zone};
+use crate::engine::journeys::{Door, Exit, Kind, Queue, Zone};
 use crate::engine::math::{Vector, direction};
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::keys::places;
@@ -25,6 +25,22 @@ pub fn exit(given: &places::Exit) -> Result<Kind, Problem> {
     Ok(Kind::Exit(Exit {
         line: line(&given.line).under("line")?,
         most_per_sec: given.most_per_sec,
+    }))
+}
+
+/// A door. People pass one-way doors from the left to the right of their lines.
+pub fn door(given: &places::Door) -> Result<Kind, Problem> {
+    let [a, b] = line(&given.line).under("line")?;
+    let ahead = given.one_way.map(Vector::from);
+    let right = ahead.map(|way| (b - a).perp(&way));
+    if right.is_some_and(|right| right.abs() <= ROUNDING * ahead.unwrap_or_default().norm()) {
+        let reason = "points along the line; give the direction [x, y] in which people pass the door";
+        return Err(Problem::new("one_way", reason));
+    }
+    let is_left = right.is_some_and(|right| right > 0.0);
+    Ok(Kind::Door(Door {
+        line: if is_left { [b, a] } else { [a, b] },
+        one_way: given.one_way.is_some(),
     }))
 }
 

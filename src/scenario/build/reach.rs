@@ -76,12 +76,12 @@ impl Prepared<'_> {
         for (journey, mut before) in first {
             for pair in journeys[usize::from(journey)].stages.windows(2) {
                 let mut next = Reached::default();
-                for place in pair[0]
-                    .places
-                    .iter()
-                    .filter(|place| before.places.contains(place))
-                {
+                let places = pair[0].places.iter();
+                for place in places.filter(|place| before.places.contains(place)) {
                     let place = &self.places[usize::from(*place)];
+                    if place.is_exit() {
+                        continue; // people leave there
+                    }
                     let from = Stand {
                         point: place.nearest_point(Vector::zeros()),
                         name: &|| format!("`{}`", shown(&place.name)),
@@ -173,6 +173,10 @@ impl Prepared<'_> {
 
     /// Why no way leads to a destination, and what to do.
     fn why_closed(&self, from: Vector, to: Destination) -> Result<String, Problem> {
+        if self.ways(self.width)?.is_open(from, to) {
+            let why = "one-way doors on every way lead only away from it; turn one of them, or open another way";
+            return Ok(why.to_owned());
+        }
         let open = self.ways(0.0)?;
         Ok(match open.is_open(from, to) {
             true => self.why_narrow(&self.floor(self.width)?, from, to),

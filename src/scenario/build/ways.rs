@@ -6,20 +6,23 @@ use std::sync::Arc;
 use crate::engine::agents::RADIUS_RANGE;
 use crate::engine::entrance::Latecomer;
 use crate::engine::geometry::Area;
-use crate::engine::journeys::Place;
+use crate::engine::journeys::{Kind, Place};
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Goal, Scene};
-use crate::engine::ways::{Floor, Goal as WayGoal, WayError, Ways};
+use crate::engine::ways::{Door, Floor, Goal as WayGoal, Rooms, WIDEST, WayError, Ways};
 use crate::scenario::build::bodies::Widest;
 use crate::scenario::build::doors;
 use crate::scenario::build::origin::{Member, Origins};
 use crate::scenario::error::Problem;
 use crate::scenario::error::quote::shown;
+use crate::scenario::file::File;
 use crate::scenario::floor_plan::{Rings, free, outlines};
 use crate::scenario::keys::goals::WayFinding;
 
 /// The floor of a scene without walkable area reaches this far beyond everything in it, meters.
 const MARGIN: f64 = 5.0;
+/// From this number of agents on, a note says how they choose their ways.
+const CROWD: usize = 300;
 /// The most goals with a path map.
 const MOST_GOALS: usize = 1000;
 
@@ -56,6 +59,15 @@ pub fn ways(
         return Err(Problem::new("exits", reason));
     }
     if keys.navigation == WayFinding::Straight {
+        for (key, is_given) in [
+            ("route_choice", scene.by_time()),
+            ("doors", !keys.doors.is_empty()),
+        ] {
+            if is_given {
+                let reason = "needs `navigation` `paths`; remove it, or `navigation`";
+                return Err(Problem::new(key, reason));
+            }
+        }
         let reason = "`straight` leads to goals only; journeys and exits need `paths`";
         return match has_journeys {
             true => Err(Problem::new("navigation", reason)),
@@ -77,7 +89,7 @@ pub fn ways(
         );
         return Err(Problem::new("goal", reason));
     }
-    let places = if has_journeys {
+    let places = if has_journeys || !keys.doors.is_empty() {
         &scene.journeys.places[..]
     } else {
         &[]
@@ -95,13 +107,28 @@ pub fn ways(
         is_given: keys.min_passage_width.is_some(),
         widest: Widest::all(scene, &origins),
     };
-    let ways = prepared.ways(prepared.width)?;
+    let mut ways = prepared.ways(prepared.width)?;
+    if scene.by_time() || !keys.doors.is_empty() {
+        ways.rooms = Some(prepared.rooms(&ways)?);
+    }
     prepared.check_goals(&ways)?;
     notes.extend(prepared.check_journeys(&ways)?);
     notes.extend(doors::notes(places, &ways.floor, behind));
     prepared.check_bodies(&ways.floor, notes)?;
     // Where nothing can stand between a place of the floor and a goal, agents walk straight.
-    Ok((has_journeys || ways.bend()).then(|| Arc::new(ways)))
+    notes.extend(crowded(keys, scene));
+    let is_needed = has_journeys || !keys.doors.is_empty() || ways.bend();
+    Ok(is_needed.then(|| Arc::new(ways)))
+}
+
+/// A note on large crowds on a floor plan whose agents take the shortest way because the file does not say how they choose.
+fn crowded(keys: &File, scene: &Scene) -> Option<String> {
+    let is_plan = keys.walkable_area.is_some() && keys.route_choice.is_none();
+    (is_plan && scene.agents.len() >= CROWD).then(|| {
+        "all agents take the shortest way, however many wait there; with `route_choice` `quickest` they take the way of \
+         the least time (`shortest` in the file hides this note)"
+            .to_owned()
+    })
 }
 
 /// The floor of a scene that has no path maps, for goals that agents get later; `width`: the least of passages.
@@ -166,6 +193,41 @@ impl Prepared<'_> {
             WayError::NotOnFloor(point) => self.not_on_floor(point),
             error => unusable(error),
         })
+    }
+
+    /// The rooms of the floor of `ways`, with ways to the same goals.
+    fn rooms(&self, ways: &Ways) -> Result<Rooms, Problem> {
+        let doors = self.places.iter().zip(0..).filter_map(|(place, number)| {
+            let Kind::Door(door) = &place.kind else {
+                return None;
+            };
+            Some(Door {
+                line: door.line,
+                place: number,
+                one_way: door.one_way,
+            })
+        });
+        let doors: Vec<Door> = doors.collect();
+        let goals = ways.goals().iter().map(|&goal| vec![WayGoal::Point(goal)]);
+        let goals: Vec<_> = self.places.iter().map(Place::goals).chain(goals).collect();
+        let areas = areas(self.scene, self.starts)?;
+        let mut widths = [WIDEST, f64::INFINITY].into_iter();
+        loop {
+            let widest = widths.next().unwrap_or(f64::INFINITY);
+            let rooms = Rooms::new(&areas, self.width, &doors, widest, &goals).map_err(unusable)?;
+            let lost = doors.iter().position(|door| !rooms.has_door(door.place));
+            match lost {
+                None => return Ok(rooms),
+                Some(_) if widest.is_finite() => {}
+                Some(k) => {
+                    let name = shown(&self.places[usize::from(doors[k].place)].name);
+                    let reason = format!(
+                        "people can walk around `{name}`: it does not lie between two parts of the floor"
+                    );
+                    return Err(Problem::new(format!("doors[{k}].line"), reason));
+                }
+            }
+        }
     }
 
     fn not_on_floor(&self, point: Vector) -> Problem {

@@ -14,7 +14,7 @@ use crate::engine::boundary::WallMethod;
 use crate::engine::clock::PAPER_TIME_STEP;
 use crate::engine::neighbors::ListPolicy;
 use crate::engine::pairs::Precision;
-use crate::engine::scene::Scene;
+use crate::engine::scene::{Knowledge, RouteChoice, Scene};
 use crate::scenario::keys::catalog::Parameters;
 use crate::scenario::keys::curve::Curve;
 use crate::scenario::keys::from::FromData;
@@ -24,7 +24,7 @@ use crate::scenario::keys::names::word;
 use crate::scenario::keys::numerics::{IntegratorChoice, TimeStep};
 use crate::scenario::keys::people::{Agent, Crowd, Entrance, Grid};
 use crate::scenario::keys::periodic::Periodic;
-use crate::scenario::keys::places::{Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
+use crate::scenario::keys::places::{Door, Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use crate::scenario::keys::preset::Preset;
 use crate::scenario::keys::profiles::ProfileChoice;
 use crate::scenario::keys::shapes::{Corners, Label, Outline, Point, Ring};
@@ -104,6 +104,14 @@ pub struct File {
     /// stop at walls. Without walls between, both are the same to the last bit.
     #[schemars(schema_with = "word::<WayFinding>")]
     pub navigation: WayFinding,
+    /// By what agents choose ways around walls: `shortest`, or `quickest`, the least expected time, with the people who
+    /// wait before doors, in aisles and in other openings of up to 6 m.
+    #[schemars(schema_with = "word::<RouteChoice>", extend("default" = RouteChoice::default()))]
+    pub route_choice: Option<RouteChoice>,
+    /// What agents know about waiting times, for `quickest`: those of the whole `floor`, or those in `sight`, before the
+    /// openings of the room where they are.
+    #[schemars(schema_with = "word::<Knowledge>")]
+    pub knowledge: Knowledge,
     /// Narrower passages are closed for `paths`, meters. Lower: agents also take gaps in which they get stuck. Default:
     /// the width of the widest body; 10 % more with RVO, 20 % less with `walk+sph`, which turns shoulders.
     #[schemars(range(min = 0, max = 100))]
@@ -127,6 +135,8 @@ pub struct File {
     pub goal: Option<Aim>,
     /// Lines at which people leave. People without goal and journey walk to the nearest one.
     pub exits: Vec<Exit>,
+    /// Doors between rooms that people pass in one direction only, or that close for some time.
+    pub doors: Vec<Door>,
     /// Lines and disks on people's ways.
     pub waypoints: Vec<Waypoint>,
     /// Areas in which people wait.
@@ -151,7 +161,7 @@ pub struct File {
     pub sources: Vec<Grid>,
     /// Lines through which agents come in, each where there is room.
     pub entrances: Vec<Entrance>,
-    /// Changes at given times: exits open and close, waiting areas are released, and pushes, in which agents that are
+    /// Changes at given times: exits and doors open and close, waiting areas are released, and pushes, in which agents that are
     /// in a region at one moment behave differently for a while.
     pub events: Vec<Event>,
     /// Values to report.
@@ -177,9 +187,9 @@ pub struct Event {
     /// The time at which it begins, seconds; it acts from the next coarse frame.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
     pub at_secs: f64,
-    /// The name of an exit that opens.
+    /// The name of an exit or door that opens.
     pub open: Option<String>,
-    /// The name of an exit that closes.
+    /// The name of an exit or door that closes.
     pub close: Option<String>,
     /// The name of a waiting area: from then on, agents do not wait there.
     pub release: Option<String>,

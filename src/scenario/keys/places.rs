@@ -32,6 +32,24 @@ pub struct Exit {
     pub most_per_sec: Option<f64>,
 }
 
+/// A door between rooms: a line from wall to wall.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Door {
+    /// The name in events and reports.
+    #[schemars(length(min = 1))]
+    pub name: String,
+    /// Its ends, at walls.
+    pub line: [Point; 2],
+    /// The direction [x, y] in which people can pass. Default: both.
+    #[schemars(inner(range(min = -1e6, max = 1e6)))]
+    pub one_way: Option<[f64; 2]>,
+    /// Times between which people cannot pass, seconds: a list of [from, until].
+    #[serde(default)]
+    #[schemars(inner(inner(range(min = 0, max = LONGEST_TIME))))]
+    pub closed_secs: Vec<[f64; 2]>,
+}
+
 /// A line that people cross, or a disk that they enter, on their way.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -12,7 +12,7 @@ use crate::engine::geometry::Polygon;
 use crate::engine::math::{Vector, direction};
 use crate::engine::period::Period;
 use crate::engine::profile::Override;
-use crate::engine::scene::{Push, Scene};
+use crate::engine::scene::{Push, Routing, Scene};
 use crate::scenario::build::need::Need;
 use crate::scenario::build::people::{MOST_NUMBERED, Population};
 use crate::scenario::build::surroundings::Surroundings;
@@ -119,6 +119,10 @@ impl Draft {
         off_floor::check_starts(&items.origins(keys, &scene), &behind)?;
         add_pushes(&mut scene, &keys.events)?;
         periodic::check(keys, &scene)?;
+        scene.routing = Routing {
+            choice: keys.route_choice.unwrap_or_default(),
+            knowledge: keys.knowledge,
+        };
         scene.ways = ways::ways(items.origins(keys, &scene), &behind, &mut notes)?;
         scene.integrator = keys.integrator.for_scene(&scene);
         scene.clock = numerics::clock_for(keys, &scene)?;

@@ -1,9 +1,9 @@
 //! A frame: a copy of it, so that another thread can write it, and what is written of it.
 
+pub mod colored_lines;
 pub mod crowd;
 pub mod events;
 pub mod stats;
-pub mod wall_forces;
 
 use rerun::{EntityPath, RecordingStream};
 
@@ -14,7 +14,7 @@ use crate::engine::simulation::Simulation;
 use crate::output::colors::Rgb;
 use crate::output::events::Line;
 use crate::output::scenery::stage_color;
-use wall_forces::Part;
+use colored_lines::Part;
 
 /// The timelines.
 pub const FRAME: &str = "frame";
@@ -51,6 +51,8 @@ pub struct Snapshot {
     pub events: Vec<Line>,
     /// The parts of walls with a force on them; `None` if they are not colored.
     pub wall_forces: Option<Vec<Part>>,
+    /// The openings before which agents wait; `None` if they do not choose ways by time.
+    pub waits: Option<Vec<Part>>,
     /// The debug agents.
     pub open: Vec<Open>,
     /// The places of the followed agents among the debug agents; `None` for absent ones.
@@ -89,6 +91,7 @@ impl Snapshot {
             pressures: numbers(&fields.pressure),
             stages: stages.collect(),
             places: stats::of_places(simulation),
+            waits: colored_lines::waits(simulation),
             open,
             waiting: simulation.backlogs().map(|one| one.waiting).collect(),
             ..Self::default()

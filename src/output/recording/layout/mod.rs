@@ -13,7 +13,8 @@ use rerun::external::re_log_types::TimeInt;
 
 use super::arrangement::Arrangement;
 use super::debug::{focus, moment};
-use super::frame::{SIM_TIME, crowd, events, stats, wall_forces};
+use super::frame::colored_lines::{ColoredLines, WAITS, WALL_FORCES};
+use super::frame::{SIM_TIME, crowd, events, stats};
 use super::options::RecordingOptions;
 use super::scene::bars;
 use super::text;
@@ -63,6 +64,8 @@ pub struct Content {
     pub fields: Vec<EntityPath>,
     /// Whether walls are colored by the force on them.
     pub has_wall_forces: bool,
+    /// Whether openings are colored by the waits before them.
+    pub has_waits: bool,
     /// Whether the walkable area has an outside.
     pub has_outside: bool,
     /// The names of the followed agents.
@@ -79,6 +82,7 @@ impl Content {
             has_waiting: false,
             fields: Vec::new(),
             has_wall_forces: false,
+            has_waits: false,
             has_outside,
             followed: Vec::new(),
         }
@@ -269,9 +273,10 @@ fn plots(content: &Content) -> ContainerLike {
     };
     let places = content.has_journeys.then(places);
     let time = plot("Computing time", "/stats/time");
-    let series = format!("/{}", wall_forces::SERIES);
-    let forces = (content.has_wall_forces).then(|| plot("Force on walls", &series));
-    let first = places.into_iter().chain(forces);
+    let series = |of: &ColoredLines| format!("/{}", of.series);
+    let forces = (content.has_wall_forces).then(|| plot("Force on walls", &series(&WALL_FORCES)));
+    let waits = (content.has_waits).then(|| plot("Waits before openings", &series(&WAITS)));
+    let first = places.into_iter().chain(waits).chain(forces);
     Tabs::new(first.chain([motion, crowd, time])).into()
 }
 

@@ -25,6 +25,7 @@ fn entity(kind: &Kind) -> (&'static str, f32) {
         Kind::Line(_) | Kind::Disk { .. } => ("waypoints", 1.0),
         Kind::Waiting(_) => ("waiting_areas", 1.0),
         Kind::Queue(_) => ("queues", 1.0),
+        Kind::Door(_) => ("doors", 2.0),
     }
 }
 

@@ -1,0 +1,85 @@
+//! The ways between which an agent chooses by time.
+
+use serde::Serialize;
+
+use crate::engine::simulation::{Outlook, Simulation};
+
+/// The choice of an agent between ways.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WayChoice {
+    /// The ways out of its room, and to its goal if that is in the room, the quickest first.
+    pub ways: Vec<WaySeen>,
+    /// Why it takes its way.
+    pub reason: &'static str,
+    /// When it compares them again, seconds.
+    pub again_at_secs: f64,
+    /// How often it has changed its mind.
+    pub changes: u32,
+}
+
+/// A way, as an agent sees it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WaySeen {
+    /// What it leads through: a door, an opening, or nothing.
+    pub through: String,
+    /// The length up to there, meters.
+    pub length: f64,
+    /// Agents bound for the opening that are nearer to it.
+    pub ahead: u32,
+    /// Its flow, P/s; `None` at the goal.
+    pub flow_per_sec: Option<f64>,
+    /// The time until the agent has passed it, seconds.
+    pub through_secs: f64,
+    /// The time to the goal, seconds.
+    pub total_secs: f64,
+    /// Whether the shortest way leads there.
+    pub shortest: bool,
+    /// Whether the agent takes it.
+    pub taken: bool,
+}
+
+impl WayChoice {
+    /// The choice of agent `i`; `None` if it does not choose between ways.
+    pub fn of(simulation: &Simulation, i: usize) -> Option<Self> {
+        let comparison = simulation.comparison(i)?;
+        let plan = comparison.plan;
+        let scene = simulation.scene();
+        let rooms = scene.rooms()?;
+        let name = |outlook: &Outlook| {
+            let Some(step) = outlook.step else {
+                return "its goal in this room".to_owned();
+            };
+            let opening = rooms.opening(step);
+            match opening.door() {
+                Some(door) => format!("door `{}`", scene.journeys.places[usize::from(door)].name),
+                None => {
+                    let at = opening.middle();
+                    format!("opening of {:.2} m at ({:.2}, {:.2})", opening.width(), at.x, at.y)
+                }
+            }
+        };
+        let mut outlooks = comparison.outlooks;
+        outlooks.sort_by(|a, b| a.total.total_cmp(&b.total));
+        let is_quickest = outlooks.first().is_some_and(|best| best.step == plan.toward);
+        let ways = outlooks.iter().map(|outlook| WaySeen {
+            through: name(outlook),
+            length: outlook.length,
+            ahead: outlook.ahead,
+            flow_per_sec: Some(outlook.flow).filter(|flow| flow.is_finite()),
+            through_secs: outlook.until_through,
+            total_secs: outlook.total,
+            shortest: outlook.step == comparison.shortest,
+            taken: outlook.step == plan.toward,
+        });
+        Some(Self {
+            reason: match (outlooks.len(), is_quickest) {
+                (0 | 1, _) => "there is no other",
+                (_, true) => "it takes the least time",
+                (_, false) => "no other was clearly quicker when the agent last compared them",
+            },
+            ways: ways.collect(),
+            again_at_secs: simulation.frame().clock.time_at(plan.decides_at),
+            changes: plan.changes,
+        })
+    }
+}

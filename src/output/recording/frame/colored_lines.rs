@@ -1,0 +1,84 @@
+//! Lines colored by a value, with the time series of the largest one: the force on walls, the waits before openings.
+
+use std::sync::LazyLock;
+
+use rerun::{LineStrips2D, RecordingStream, Scalars};
+
+use crate::analysis::wall_forces::Outlines;
+use crate::engine::simulation::Simulation;
+use crate::output::colors::{ColorMap, Rgb, WAIT, WALL_FORCE};
+use crate::output::recording::draw::{Point, color, log_series, px, xy};
+use crate::output::recording::error::Cause;
+
+/// A line with its value.
+pub type Part = ([Point; 2], f32);
+
+/// A layer of lines.
+pub struct ColoredLines {
+    /// Its entity.
+    pub entity: &'static str,
+    /// The time series of the largest value, and its name.
+    pub series: &'static str,
+    name: &'static str,
+    rgb: Rgb,
+    map: &'static LazyLock<ColorMap>,
+}
+
+/// Walls, colored by the force on them, N/m.
+pub static WALL_FORCES: ColoredLines = ColoredLines {
+    entity: "world/wall_forces",
+    series: "stats/wall_forces",
+    name: "largest force on 1 m of wall [N/m]",
+    rgb: [240, 90, 60],
+    map: &WALL_FORCE,
+};
+
+/// Openings between rooms, colored by the time that the last agent bound for them waits, seconds.
+pub static WAITS: ColoredLines = ColoredLines {
+    entity: "world/waits",
+    series: "stats/waits",
+    name: "longest wait before an opening [s]",
+    rgb: [230, 160, 60],
+    map: &WAIT,
+};
+
+/// The parts of walls with a force on them in an evaluated frame.
+pub fn wall_forces(outlines: &Outlines, simulation: &Simulation, body_mass: f64) -> Vec<Part> {
+    let pressed = outlines.pressed(simulation, body_mass);
+    let parts = pressed.map(|(ends, force)| (ends.map(xy), force as f32));
+    parts.collect()
+}
+
+/// The openings before which agents wait; `None` if they do not choose ways by time.
+pub fn waits(simulation: &Simulation) -> Option<Vec<Part>> {
+    let rooms = simulation.scene().rooms()?;
+    let waits = rooms.openings().iter().zip(simulation.waits());
+    let waits = waits.filter(|(_, wait)| *wait > 0.0);
+    let parts = waits.flat_map(|(opening, wait)| {
+        let pieces = opening.pieces().iter();
+        pieces.map(move |ends| (ends.map(xy), wait as f32))
+    });
+    Some(parts.collect())
+}
+
+impl ColoredLines {
+    /// Logs the style of the layer and of its time series.
+    pub fn log_style(&self, stream: &RecordingStream) -> Result<(), Cause> {
+        let style = LineStrips2D::update_fields()
+            .with_radii(px(3.0))
+            .with_draw_order(7.0);
+        stream.log_static(self.entity, &style)?;
+        log_series(stream, self.series, self.name, Some(self.rgb))
+    }
+
+    /// Logs the lines of one frame.
+    pub fn log(&self, stream: &RecordingStream, parts: &[Part]) -> Result<(), Cause> {
+        let colors = parts.iter().map(|&(_, value)| color(self.map.color(value)));
+        let lines = LineStrips2D::update_fields()
+            .with_strips(parts.iter().map(|(ends, _)| *ends))
+            .with_colors(colors);
+        stream.log(self.entity, &lines)?;
+        let largest = parts.iter().map(|&(_, value)| value).fold(0.0, f32::max);
+        Ok(stream.log(self.series, &Scalars::single(f64::from(largest)))?)
+    }
+}

@@ -1,0 +1,250 @@
+//! Ways by time: aisles and doors that are used, one-way doors, doors that close, and journeys that branch.
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use sandbox::engine::math::Vector;
+use sandbox::engine::simulation::Simulation;
+use sandbox::engine::ways::{Destination, Rooms, WIDEST};
+use sandbox::scenario::Scenario;
+use serde_json::{Value, json};
+
+use crate::common::floors::Plan;
+use crate::common::simulated::{after, go_on, scenario, start};
+
+/// Two rooms of 10 m × 20 m, joined by doors: (their middle, their width), m. People of the west room leave in the east.
+fn two_rooms(doors: &[(f64, f64)], people: u32) -> Value {
+    let gaps = doors.iter().map(|&(y, width)| {
+        let (low, high) = (y - width / 2.0, y + width / 2.0);
+        json!([[[9.9, low], [10.3, low], [10.3, high], [9.9, high]]])
+    });
+    let rooms = [
+        json!([[[0, 0], [10, 0], [10, 20], [0, 20]]]),
+        json!([[[10.2, 0], [20, 0], [20, 20], [10.2, 20]]]),
+    ];
+    json!({
+        "duration_secs": 200, "profile": "walk+sph", "route_choice": "quickest",
+        "walkable_area": rooms.into_iter().chain(gaps).collect::<Vec<_>>(),
+        "exits": [{"name": "end", "line": [[20, 0], [20, 20]]}],
+        "crowds": [{"area": [[1, 1], [8, 1], [8, 19], [1, 19]], "number": people}],
+        "stop": {"when_empty": true},
+    })
+}
+
+/// Runs until all have left, and returns the time by which a part of the agents have left, and the number of changes of
+/// mind per agent and second on their way.
+fn emptied(document: &Value) -> (f64, f64) {
+    let mut simulation = start(document, &[]);
+    let people = simulation.frame().agents.len();
+    let (mut seconds, mut changes) = (0.0, 0);
+    let mut of_agent = vec![0; people];
+    while simulation.outcome().arrivals.len() < people {
+        go_on(&mut simulation, seconds_of(&simulation) + 0.5);
+        assert!(seconds_of(&simulation) < 250.0, "some agents do not leave");
+        let agents = simulation.frame().agents;
+        seconds += 0.5 * agents.count_present() as f64;
+        for (&id, plan) in agents.id.iter().zip(&agents.plan) {
+            of_agent[id as usize] = plan.map_or(of_agent[id as usize], |plan| plan.changes);
+        }
+    }
+    changes += of_agent.iter().sum::<u32>();
+    let at = &simulation.outcome().arrivals[(people * 95).div_ceil(100) - 1];
+    (at.time, f64::from(changes) / seconds)
+}
+
+fn seconds_of(simulation: &Simulation) -> f64 {
+    simulation.frame().clock.time()
+}
+
+/// The stadium, and the same with a choice between its aisles by hand.
+fn stadiums() -> [Value; 2] {
+    let text = include_str!("../scenarios/stadium.json");
+    let by_time: Value = serde_json::from_str(text).unwrap();
+    let mut by_hand = by_time.clone();
+    let aisles = [("left", 0.0, 1.2), ("middle", 7.2, 8.4), ("right", 14.4, 15.6)];
+    let aisles = aisles.map(|(name, from, to)| json!({"name": name, "line": [[from, -0.3], [to, -0.3]]}));
+    by_hand["route_choice"] = json!("shortest");
+    by_hand["waypoints"] = json!(aisles);
+    by_hand["journeys"] =
+        json!([{"name": "leave", "stages": [{"quickest": ["left", "middle", "right"]}, "exit"]}]);
+    for block in by_hand["grids"].as_array_mut().unwrap() {
+        block["journey"] = json!("leave");
+    }
+    [by_time, by_hand]
+}
+
+#[test]
+fn the_stadium_empties_as_fast_as_with_a_split_by_hand() {
+    let [by_time, by_hand] = stadiums();
+    let ((time, changes), (hand, _)) = (emptied(&by_time), emptied(&by_hand));
+    assert!(time <= 1.05 * hand, "{time} s, by hand {hand} s");
+    assert!(changes < 1.0 / 3.0, "{changes} changes per second");
+}
+
+#[test]
+fn equal_doors_are_used_alike_and_wide_doors_more() {
+    let count = |doors: &[(f64, f64)]| {
+        let document = two_rooms(doors, 160);
+        let mut simulation = start(&document, &[]);
+        let mut north = std::collections::BTreeSet::new();
+        for tenth in 1..600 {
+            go_on(&mut simulation, f64::from(tenth) / 10.0);
+            let agents = simulation.frame().agents;
+            for (&id, p) in agents.id.iter().zip(&agents.position) {
+                if (10.0..10.6).contains(&p.x) && p.y > 10.0 {
+                    north.insert(id);
+                }
+            }
+        }
+        north.len() as f64 / 160.0
+    };
+    let alike = count(&[(5.0, 1.0), (15.0, 1.0)]);
+    // Five standard deviations of a fair coin are 0.2.
+    assert!((alike - 0.5).abs() < 0.2, "{alike} take the northern of two equal doors");
+    let wide = count(&[(5.0, 0.9), (15.0, 2.7)]);
+    assert!(wide > 0.6, "{wide} take the door that is three times as wide");
+}
+
+#[test]
+fn without_a_crowd_the_quickest_way_is_the_shortest_to_the_last_bit() {
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    for _ in 0..10 {
+        let doors = [(5.0, rng.random_range(0.8..3.0)), (15.0, rng.random_range(0.8..3.0))];
+        let mut document = two_rooms(&doors, 1);
+        document["seed"] = json!(rng.random_range(0..1000));
+        let quickest = after(&document, &[], 15.0);
+        document["route_choice"] = json!("shortest");
+        assert_eq!(after(&document, &[], 15.0).digest(), quickest.digest());
+    }
+}
+
+#[test]
+fn runs_have_the_same_bits_on_any_number_of_threads_and_when_they_are_resumed() {
+    let [document, _] = stadiums();
+    let mut digests = Vec::new();
+    for threads in 1..=3 {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        digests.push(pool.install(|| {
+            let first = after(&document, &[], 8.3);
+            let scene = scenario(&document, &[]).unwrap().scene;
+            let mut second = Simulation::resumed(scene, first.state()).unwrap();
+            go_on(&mut second, 16.0);
+            second.digest()
+        }));
+    }
+    digests.push(after(&document, &[], 16.0).digest());
+    assert!(digests.windows(2).all(|pair| pair[0] == pair[1]), "{digests:?}");
+}
+
+#[test]
+fn rooms_lead_to_all_goals_that_ways_lead_to() {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let mut seen = 0;
+    for _ in 0..60 {
+        let plan = Plan::random(&mut rng);
+        let areas = plan.areas();
+        let width = rng.random_range(0.0..1.0);
+        let Ok(floor) = sandbox::engine::ways::Floor::new(&areas, width) else {
+            continue;
+        };
+        let middles = || (0..floor.mesh.triangles().len() as u32).map(|t| floor.mesh.middle(t));
+        let goal: Vector = middles().nth(rng.random_range(0..middles().count())).unwrap();
+        let goals = [vec![sandbox::engine::ways::Goal::Point(goal)]];
+        let rooms = Rooms::new(&areas, width, &[], WIDEST, &goals).unwrap();
+        let ways = sandbox::engine::ways::Ways::new(floor.clone(), &goals, vec![]).unwrap();
+        for p in middles() {
+            let way = ways.open_way(p, Destination::Place(0));
+            let by_rooms = rooms.length(p, 0);
+            assert_eq!(way.is_some(), by_rooms.is_finite(), "{plan:?}: from {p} to {goal}");
+            seen += 1;
+            // A way over the middles of openings lacks at most half of each opening that it crosses.
+            let lacks: f64 = rooms.openings().iter().map(|opening| opening.width() / 2.0).sum();
+            if let Some(way) = way {
+                assert!(by_rooms >= way.length - lacks - 1e-6, "{plan:?}: from {p} to {goal}");
+            }
+        }
+    }
+    assert!(seen > 500);
+}
+
+/// Two rooms with two doors of 1 m; the southern one is a door of the scenario.
+fn with_door(change: &Value) -> Value {
+    let mut document = two_rooms(&[(5.0, 1.0), (15.0, 1.0)], 12);
+    document["route_choice"] = json!("shortest");
+    document["crowds"][0]["area"] = json!([[2, 2], [8, 2], [8, 8], [2, 8]]);
+    let mut door = json!({"name": "south", "line": [[10.1, 4.5], [10.1, 5.5]]});
+    for (key, value) in change.as_object().unwrap() {
+        door[key] = value.clone();
+    }
+    document["doors"] = json!([door]);
+    document
+}
+
+/// The number of agents that have passed the door, and that have left, after a minute.
+fn through_door(document: &Value) -> [usize; 2] {
+    let simulation = after(document, &[], 60.0);
+    let door = simulation.progress().places.last().unwrap().passed;
+    [door as usize, simulation.outcome().arrivals.len()]
+}
+
+#[test]
+fn people_pass_one_way_doors_in_their_direction_only() {
+    assert_eq!(through_door(&with_door(&json!({}))), [12, 12]);
+    assert_eq!(through_door(&with_door(&json!({"one_way": [1, 0]}))), [12, 12]);
+    assert_eq!(through_door(&with_door(&json!({"one_way": [-1, 0.2]}))), [0, 12]);
+}
+
+#[test]
+fn people_walk_around_closed_doors_and_wait_where_no_other_way_leads() {
+    assert_eq!(through_door(&with_door(&json!({"closed_secs": [[0, 100]]}))), [0, 12]);
+    let mut sole = with_door(&json!({"closed_secs": [[0, 20]]}));
+    sole["walkable_area"].as_array_mut().unwrap().pop();
+    let mut simulation = start(&sole, &[]);
+    go_on(&mut simulation, 19.9);
+    let agents = simulation.frame().agents;
+    assert_eq!(agents.len(), 12);
+    assert!(agents.position.iter().all(|p| p.x < 10.1));
+    go_on(&mut simulation, 60.0);
+    assert_eq!(simulation.outcome().arrivals.len(), 12);
+}
+
+#[test]
+fn doors_that_cannot_be_used_are_errors_with_their_place() {
+    let error = |document: &Value| scenario(document, &[]).unwrap_err();
+    let lone = |mut document: Value| {
+        document["walkable_area"].as_array_mut().unwrap().pop();
+        document
+    };
+    let closed = error(&lone(with_door(&json!({"one_way": [-1, 0]}))));
+    assert!(closed.contains("one-way doors on every way lead only away from it"), "{closed}");
+    let open = error(&with_door(&json!({"line": [[10.1, 4.5], [10.1, 5.2]]})));
+    assert!(open.contains("doors[0].line") && open.contains("walk around"), "{open}");
+    let along = error(&with_door(&json!({"one_way": [0, 1]})));
+    assert!(along.contains("doors[0].one_way"), "{along}");
+    let mut stage = with_door(&json!({}));
+    stage["journeys"] = json!([{"name": "j", "stages": ["south", "end"]}]);
+    assert!(error(&stage).contains("is a door"));
+    let mut straight = with_door(&json!({}));
+    straight["navigation"] = json!("straight");
+    assert!(error(&straight).contains("navigation"));
+}
+
+#[test]
+fn some_of_a_journey_leave_at_an_exit_before_its_last_stage() {
+    let document = json!({
+        "seed": 4, "walkable_area": [[[[0, 0], [30, 0], [30, 10], [0, 10]]]],
+        "exits": [{"name": "side", "line": [[10, 0], [14, 0]]}, {"name": "end", "line": [[30, 2], [30, 8]]}],
+        "waypoints": [{"name": "gate", "line": [[16, 0], [16, 10]]}],
+        "journeys": [{"name": "j", "stages": [{"shares": {"side": 1, "gate": 3}}, "end"]}],
+        "grids": [{"min": [1, 1], "max": [9, 9], "columns": 10, "rows": 10, "journey": "j"}],
+    });
+    let simulation = after(&document, &[], 60.0);
+    let passed: Vec<u32> = simulation.progress().places.iter().map(|place| place.passed).collect();
+    assert_eq!(passed[0] + passed[1], 100);
+    assert_eq!(passed[1], passed[2]);
+    // Five standard deviations.
+    assert!((4..=46).contains(&passed[0]), "{passed:?}");
+    let mut all = document;
+    all["journeys"][0]["stages"][0] = json!({"shares": {"side": 1}});
+    let error = Scenario::parse(&all.to_string(), "f.json", &[]).unwrap_err().to_string();
+    assert!(error.contains("stages[0]") && error.contains("last stage"), "{error}");
+}
