@@ -8,6 +8,7 @@ use sandbox::engine::ways::{Destination, Rooms, WIDEST};
 use sandbox::scenario::Scenario;
 use serde_json::{Value, json};
 
+use crate::common::bounded::config;
 use crate::common::floors::Plan;
 use crate::common::simulated::{after, go_on, scenario, start};
 
@@ -38,7 +39,8 @@ fn emptied(document: &Value) -> (f64, f64) {
     let (mut seconds, mut changes) = (0.0, 0);
     let mut of_agent = vec![0; people];
     while simulation.outcome().arrivals.len() < people {
-        go_on(&mut simulation, seconds_of(&simulation) + 0.5);
+        let until = seconds_of(&simulation) + 0.5;
+        go_on(&mut simulation, until);
         assert!(seconds_of(&simulation) < 250.0, "some agents do not leave");
         let agents = simulation.frame().agents;
         seconds += 0.5 * agents.count_present() as f64;
@@ -60,8 +62,13 @@ fn stadiums() -> [Value; 2] {
     let text = include_str!("../scenarios/stadium.json");
     let by_time: Value = serde_json::from_str(text).unwrap();
     let mut by_hand = by_time.clone();
-    let aisles = [("left", 0.0, 1.2), ("middle", 7.2, 8.4), ("right", 14.4, 15.6)];
-    let aisles = aisles.map(|(name, from, to)| json!({"name": name, "line": [[from, -0.3], [to, -0.3]]}));
+    let aisles = [
+        ("left", 0.0, 1.2),
+        ("middle", 7.2, 8.4),
+        ("right", 14.4, 15.6),
+    ];
+    let aisles =
+        aisles.map(|(name, from, to)| json!({"name": name, "line": [[from, -0.3], [to, -0.3]]}));
     by_hand["route_choice"] = json!("shortest");
     by_hand["waypoints"] = json!(aisles);
     by_hand["journeys"] =
@@ -99,16 +106,25 @@ fn equal_doors_are_used_alike_and_wide_doors_more() {
     };
     let alike = count(&[(5.0, 1.0), (15.0, 1.0)]);
     // Five standard deviations of a fair coin are 0.2.
-    assert!((alike - 0.5).abs() < 0.2, "{alike} take the northern of two equal doors");
+    assert!(
+        (alike - 0.5).abs() < 0.2,
+        "{alike} take the northern of two equal doors"
+    );
     let wide = count(&[(5.0, 0.9), (15.0, 2.7)]);
-    assert!(wide > 0.6, "{wide} take the door that is three times as wide");
+    assert!(
+        wide > 0.6,
+        "{wide} take the door that is three times as wide"
+    );
 }
 
 #[test]
 fn without_a_crowd_the_quickest_way_is_the_shortest_to_the_last_bit() {
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     for _ in 0..10 {
-        let doors = [(5.0, rng.random_range(0.8..3.0)), (15.0, rng.random_range(0.8..3.0))];
+        let doors = [
+            (5.0, rng.random_range(0.8..3.0)),
+            (15.0, rng.random_range(0.8..3.0)),
+        ];
         let mut document = two_rooms(&doors, 1);
         document["seed"] = json!(rng.random_range(0..1000));
         let quickest = after(&document, &[], 15.0);
@@ -122,7 +138,10 @@ fn runs_have_the_same_bits_on_any_number_of_threads_and_when_they_are_resumed() 
     let [document, _] = stadiums();
     let mut digests = Vec::new();
     for threads in 1..=3 {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         digests.push(pool.install(|| {
             let first = after(&document, &[], 8.3);
             let scene = scenario(&document, &[]).unwrap().scene;
@@ -132,7 +151,10 @@ fn runs_have_the_same_bits_on_any_number_of_threads_and_when_they_are_resumed() 
         }));
     }
     digests.push(after(&document, &[], 16.0).digest());
-    assert!(digests.windows(2).all(|pair| pair[0] == pair[1]), "{digests:?}");
+    assert!(
+        digests.windows(2).all(|pair| pair[0] == pair[1]),
+        "{digests:?}"
+    );
 }
 
 #[test]
@@ -147,19 +169,32 @@ fn rooms_lead_to_all_goals_that_ways_lead_to() {
             continue;
         };
         let middles = || (0..floor.mesh.triangles().len() as u32).map(|t| floor.mesh.middle(t));
-        let goal: Vector = middles().nth(rng.random_range(0..middles().count())).unwrap();
+        let goal: Vector = middles()
+            .nth(rng.random_range(0..middles().count()))
+            .unwrap();
         let goals = [vec![sandbox::engine::ways::Goal::Point(goal)]];
         let rooms = Rooms::new(&areas, width, &[], WIDEST, &goals).unwrap();
         let ways = sandbox::engine::ways::Ways::new(floor.clone(), &goals, vec![]).unwrap();
         for p in middles() {
             let way = ways.open_way(p, Destination::Place(0));
             let by_rooms = rooms.length(p, 0);
-            assert_eq!(way.is_some(), by_rooms.is_finite(), "{plan:?}: from {p} to {goal}");
+            assert_eq!(
+                way.is_some(),
+                by_rooms.is_finite(),
+                "{plan:?}: from {p} to {goal}"
+            );
             seen += 1;
             // A way over the middles of openings lacks at most half of each opening that it crosses.
-            let lacks: f64 = rooms.openings().iter().map(|opening| opening.width() / 2.0).sum();
+            let lacks: f64 = rooms
+                .openings()
+                .iter()
+                .map(|opening| opening.width() / 2.0)
+                .sum();
             if let Some(way) = way {
-                assert!(by_rooms >= way.length - lacks - 1e-6, "{plan:?}: from {p} to {goal}");
+                assert!(
+                    by_rooms >= way.length - lacks - 1e-6,
+                    "{plan:?}: from {p} to {goal}"
+                );
             }
         }
     }
@@ -189,13 +224,22 @@ fn through_door(document: &Value) -> [usize; 2] {
 #[test]
 fn people_pass_one_way_doors_in_their_direction_only() {
     assert_eq!(through_door(&with_door(&json!({}))), [12, 12]);
-    assert_eq!(through_door(&with_door(&json!({"one_way": [1, 0]}))), [12, 12]);
-    assert_eq!(through_door(&with_door(&json!({"one_way": [-1, 0.2]}))), [0, 12]);
+    assert_eq!(
+        through_door(&with_door(&json!({"one_way": [1, 0]}))),
+        [12, 12]
+    );
+    assert_eq!(
+        through_door(&with_door(&json!({"one_way": [-1, 0.2]}))),
+        [0, 12]
+    );
 }
 
 #[test]
 fn people_walk_around_closed_doors_and_wait_where_no_other_way_leads() {
-    assert_eq!(through_door(&with_door(&json!({"closed_secs": [[0, 100]]}))), [0, 12]);
+    assert_eq!(
+        through_door(&with_door(&json!({"closed_secs": [[0, 100]]}))),
+        [0, 12]
+    );
     let mut sole = with_door(&json!({"closed_secs": [[0, 20]]}));
     sole["walkable_area"].as_array_mut().unwrap().pop();
     let mut simulation = start(&sole, &[]);
@@ -215,9 +259,15 @@ fn doors_that_cannot_be_used_are_errors_with_their_place() {
         document
     };
     let closed = error(&lone(with_door(&json!({"one_way": [-1, 0]}))));
-    assert!(closed.contains("one-way doors on every way lead only away from it"), "{closed}");
+    assert!(
+        closed.contains("one-way doors on every way lead only away from it"),
+        "{closed}"
+    );
     let open = error(&with_door(&json!({"line": [[10.1, 4.5], [10.1, 5.2]]})));
-    assert!(open.contains("doors[0].line") && open.contains("walk around"), "{open}");
+    assert!(
+        open.contains("doors[0].line") && open.contains("walk around"),
+        "{open}"
+    );
     let along = error(&with_door(&json!({"one_way": [0, 1]})));
     assert!(along.contains("doors[0].one_way"), "{along}");
     let mut stage = with_door(&json!({}));
@@ -238,13 +288,85 @@ fn some_of_a_journey_leave_at_an_exit_before_its_last_stage() {
         "grids": [{"min": [1, 1], "max": [9, 9], "columns": 10, "rows": 10, "journey": "j"}],
     });
     let simulation = after(&document, &[], 60.0);
-    let passed: Vec<u32> = simulation.progress().places.iter().map(|place| place.passed).collect();
+    let passed: Vec<u32> = simulation
+        .progress()
+        .places
+        .iter()
+        .map(|place| place.passed)
+        .collect();
     assert_eq!(passed[0] + passed[1], 100);
     assert_eq!(passed[1], passed[2]);
     // Five standard deviations.
     assert!((4..=46).contains(&passed[0]), "{passed:?}");
     let mut all = document;
     all["journeys"][0]["stages"][0] = json!({"shares": {"side": 1}});
-    let error = Scenario::parse(&all.to_string(), "f.json", &[]).unwrap_err().to_string();
-    assert!(error.contains("stages[0]") && error.contains("last stage"), "{error}");
+    let error = Scenario::parse(&all.to_string(), "f.json", &[])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("stages[0]") && error.contains("last stage"),
+        "{error}"
+    );
+}
+
+/// A random plan of rooms with doors, an exit of 1.6 m at one end, and a crowd at the other.
+fn random_floor(rng: &mut ChaCha8Rng) -> Value {
+    let plan = Plan::drawn(rng);
+    let [a, b, c, d] = [0, 1, 2, 3].map(|k| Vector::from(plan.rings[0][k]));
+    let [middle, half] = [0.5 * (b + c), 0.8 * (c - b).normalize()];
+    let exit = [middle - half, middle + half].map(<[f64; 2]>::from);
+    let area = [a, a + 0.3 * (b - a), d + 0.3 * (c - d), d].map(<[f64; 2]>::from);
+    json!({
+        "duration_secs": 240, "profile": "walk+sph", "walkable_area": [plan.rings],
+        "exits": [{"name": "end", "line": exit}], "crowds": [{"area": area, "number": 40}],
+        "stop": {"when_empty": true},
+    })
+}
+
+/// The mean time over some seeds by which 95 % have left; `None` if the floor is refused or some do not leave.
+fn mean_time(document: &Value, seeds: std::ops::Range<u64>) -> Option<f64> {
+    let times = seeds.clone().map(|seed| {
+        let mut simulation =
+            Simulation::new(scenario(document, &[&format!("seed={seed}")]).ok()?.scene).ok()?;
+        let left = |simulation: &Simulation| simulation.outcome().arrivals.len();
+        while left(&simulation) < 38 && seconds_of(&simulation) < 240.0 {
+            let until = seconds_of(&simulation) + 1.0;
+            go_on(&mut simulation, until);
+        }
+        let arrivals = &simulation.outcome().arrivals;
+        arrivals.get(37).map(|arrival| arrival.time)
+    });
+    let times: Option<Vec<f64>> = times.collect();
+    times.map(|times| times.iter().sum::<f64>() / seeds.count() as f64)
+}
+
+/// The quickest ways on random floors, and what they gain: 500 floors with
+/// `BAD_INPUT_TIMES=167 cargo test --release --test engine -- --nocapture random_floors`.
+#[test]
+fn on_random_floors_the_quickest_ways_are_not_slower() {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let mut gains: Vec<f64> = Vec::new();
+    let floors = config(3).cases as usize;
+    while gains.len() < floors {
+        let mut document = random_floor(&mut rng);
+        let shortest = mean_time(&document, 1..6);
+        document["route_choice"] = json!("quickest");
+        let (Some(shortest), Some(quickest)) = (shortest, mean_time(&document, 1..6)) else {
+            continue;
+        };
+        let gain = 1.0 - quickest / shortest;
+        println!(
+            "floor {}: {shortest:.2} s, {quickest:.2} s, gain {:.1} %",
+            gains.len(),
+            100.0 * gain
+        );
+        gains.push(gain);
+    }
+    gains.sort_by(f64::total_cmp);
+    let at = |part: f64| 100.0 * gains[(part * (gains.len() - 1) as f64).round() as usize];
+    println!(
+        "gains: {:?} %",
+        [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0].map(at)
+    );
+    assert!(gains[0] > -0.03, "{:.1} % slower", -100.0 * gains[0]);
 }

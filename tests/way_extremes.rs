@@ -168,6 +168,7 @@ fn an_agent_shoved_anywhere_has_a_way_from_there_at_once() {
                 position,
                 to,
                 radius: 0.24,
+                detour: None,
             };
             let Some(shortest) = ways.way(position, to) else {
                 continue;

@@ -107,6 +107,7 @@ fn agents_see_what_they_walk_to_and_take_nearly_the_shortest_way_wherever_they_a
                 position: p,
                 to: Destination::Goal(goal),
                 radius: 0.2,
+                detour: None,
             };
             aim = ways.aim(&walker, &mut held, 1);
         }

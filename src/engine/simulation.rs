@@ -16,6 +16,7 @@ mod schedule;
 mod situation;
 mod stages;
 mod state;
+mod times;
 mod trips;
 
 pub use bound::Stream;
@@ -24,10 +25,11 @@ pub use entrances::Backlog;
 pub use goals::{Absent, GoalError};
 pub use limited::{Limited, SPOT_RADIUS};
 pub use passing::{BEFORE_WALLS, WALKS_ON};
-pub use plans::{Comparison, Outlook};
+pub use plans::Comparison;
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};
+pub use times::Outlook;
 pub use trips::{PlaceState, Progress};
 
 use std::sync::LazyLock;

@@ -24,7 +24,7 @@ pub struct WaySeen {
     pub through: String,
     /// The length up to there, meters.
     pub length: f64,
-    /// Agents bound for the opening that are nearer to it.
+    /// Agents that pass the opening before: those that are nearer to it, and those that come from the other side.
     pub ahead: u32,
     /// Its flow, P/s; `None` at the goal.
     pub flow_per_sec: Option<f64>,
@@ -54,13 +54,20 @@ impl WayChoice {
                 Some(door) => format!("door `{}`", scene.journeys.places[usize::from(door)].name),
                 None => {
                     let at = opening.middle();
-                    format!("opening of {:.2} m at ({:.2}, {:.2})", opening.width(), at.x, at.y)
+                    format!(
+                        "opening of {:.2} m at ({:.2}, {:.2})",
+                        opening.width(),
+                        at.x,
+                        at.y
+                    )
                 }
             }
         };
         let mut outlooks = comparison.outlooks;
         outlooks.sort_by(|a, b| a.total.total_cmp(&b.total));
-        let is_quickest = outlooks.first().is_some_and(|best| best.step == plan.toward);
+        let is_quickest = outlooks
+            .first()
+            .is_some_and(|best| best.step == plan.toward);
         let ways = outlooks.iter().map(|outlook| WaySeen {
             through: name(outlook),
             length: outlook.length,

@@ -49,9 +49,8 @@ impl JourneyStage {
     pub fn passed(&self, chosen: u16, places: &[Place]) -> impl Iterator<Item = u16> {
         let is_drawn = matches!(self.choice, Choice::Shares(_));
         let is_exit = |place: u16| places[usize::from(place)].is_exit();
-        let counts = move |&place: &u16| {
-            !is_drawn || place == chosen || (is_exit(chosen) && is_exit(place))
-        };
+        let counts =
+            move |&place: &u16| !is_drawn || place == chosen || (is_exit(chosen) && is_exit(place));
         self.places.iter().copied().filter(counts)
     }
 }

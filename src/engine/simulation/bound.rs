@@ -4,7 +4,6 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::Crowd;
-use super::plans::Times;
 use crate::engine::clock::Clock;
 use crate::engine::journeys::{Kind, Place, Status};
 use crate::engine::scene::Scene;
@@ -20,7 +19,7 @@ pub(super) const FLOW_PER_METER: f64 = 1.3;
 /// one more, a crowd stands before it, and its flow is its capacity.
 const CROWD: f64 = 2.0;
 /// The area before a line ends at this distance, meters.
-const BEFORE: f64 = 2.0;
+pub(super) const BEFORE: f64 = 2.0;
 /// The least flow that agents expect from observation, P/s.
 const LEAST_FLOW: f64 = 0.05;
 /// The width of the bins of distances in which agents are counted, meters.
@@ -136,15 +135,17 @@ pub(super) fn count(crowd: &mut Crowd, scene: &Scene) {
     let per_meter = crowd.largest_flow(scene);
     crowd.progress.per_meter = per_meter;
     let speed = scene.preferred_speed.max(f64::MIN_POSITIVE);
-    let most = |width: f64| 1.0 + CROWD * FLOW_PER_METER * width * BEFORE / speed;
+    let crowd_before =
+        |width: f64, before: f64| 1.0 + CROWD * FLOW_PER_METER * width * before / speed;
     let places = scene.journeys.places.iter();
     for (place, state) in places.zip(&mut crowd.progress.places) {
         let width = width(place).unwrap_or(0.0);
-        state.stream.observe(most(width));
+        state.stream.observe(crowd_before(width, BEFORE));
     }
     if let Some(rooms) = scene.rooms() {
         for (step, stream) in (0..).zip(&mut crowd.progress.steps) {
-            stream.observe(most(rooms.opening(step).width()));
+            let before = rooms.depth(step).min(BEFORE);
+            stream.observe(crowd_before(rooms.opening(step).width(), before));
         }
     }
 }
@@ -163,12 +164,14 @@ impl Crowd {
             _ => true,
         });
         let places = places.filter_map(|(place, state)| Some((width(place)?, &state.stream)));
-        let steps = (0..).zip(&self.progress.steps).filter_map(|(step, stream)| {
-            Some((scene.rooms()?.opening(step as Step).width(), stream))
-        });
-        let flows = places.chain(steps).map(|(width, stream)| {
-            stream.flow(FLOW_PER_METER * width) / width
-        });
+        let steps = (0..)
+            .zip(&self.progress.steps)
+            .filter_map(|(step, stream)| {
+                Some((scene.rooms()?.opening(step as Step).width(), stream))
+            });
+        let flows = places
+            .chain(steps)
+            .map(|(width, stream)| stream.flow(FLOW_PER_METER * width) / width);
         flows.fold(FLOW_PER_METER, f64::max)
     }
 
@@ -214,20 +217,11 @@ impl Crowd {
         for (step, length) in toward.into_iter().flatten() {
             lengths[step as usize].push(length);
         }
-        self.progress.steps.resize_with(lengths.len(), Stream::default);
+        self.progress
+            .steps
+            .resize_with(lengths.len(), Stream::default);
         for (stream, lengths) in self.progress.steps.iter_mut().zip(&lengths) {
             stream.recount(lengths);
         }
-    }
-
-    /// The times that agents expect now.
-    pub(super) fn times<'a>(&'a self, scene: &'a Scene) -> Option<Times<'a>> {
-        let rooms = scene.rooms()?;
-        Some(Times {
-            rooms,
-            scene,
-            progress: &self.progress,
-            per_meter: self.flow_per_meter(),
-        })
     }
 }

@@ -7,6 +7,9 @@
 //! the way.
 
 mod corner;
+mod course;
+mod crossing;
+mod cuts;
 mod edges;
 mod entries;
 mod expansion;
@@ -18,6 +21,7 @@ mod map;
 mod mesh;
 mod narrow;
 mod narrowings;
+mod opening;
 mod parts;
 mod passage;
 mod plan;
@@ -30,15 +34,17 @@ mod steer;
 mod targets;
 
 pub use corner::{Bend, Corner, Turn};
+pub use cuts::Door;
 pub use floor::Floor;
 pub use goal::Goal;
 pub use map::{Next, PathMap, SLACK, Way};
 pub use mesh::{Mesh, Triangle, nearest_on, side};
 pub use narrowings::{Narrowing, Narrowings};
+pub use opening::{Opening, Step};
 pub use passage::{Passage, Passages};
-pub use plan::Plan;
-pub use rooms::{Door, Opening, Rooms, Step, WIDEST};
-pub use route::{Destination, Detour, Route, Walker, Ways};
+pub use plan::{Detour, Plan};
+pub use rooms::{Rooms, WIDEST};
+pub use route::{Destination, Route, Walker, Ways};
 pub use steer::around;
 
 use crate::engine::math::Vector;

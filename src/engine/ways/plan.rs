@@ -2,8 +2,17 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::rooms::Step;
-use super::route::{Destination, Detour, Ways};
+use super::opening::Step;
+use super::route::{Destination, Ways};
+
+/// Another way than the shortest one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Detour {
+    /// Through the opening of this step, which leads out of the room.
+    Opening(Step),
+    /// To the goal without leaving the room.
+    Room,
+}
 
 /// The plan of an agent: how it leaves its room.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -6,96 +6,24 @@
 //! crosses no opening.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BinaryHeap;
 
 use rayon::prelude::*;
 
 use super::WayError;
+use super::course::points;
+use super::crossing::{beside_corners, crossing};
+use super::cuts::{Cuts, Door, parts};
 use super::floor::Floor;
 use super::goal::Goal;
 use super::map::PathMap;
-use super::mesh::{Mesh, side, to_segment};
-use super::narrow::{End, Narrow, narrow};
-use super::route::points;
+use super::mesh::{Mesh, to_segment};
+use super::opening::{MARGIN, Opening, Step, openings};
 use crate::engine::geometry::Area;
 use crate::engine::math::{Vector, direction, perpendicular};
 
 /// Wider passages are no openings, meters: the walk through them takes no waiting that counts.
 pub const WIDEST: f64 = 6.0;
-/// Of two passages whose middles are nearer than this part of the width of the narrower one, such as the two sides of a
-/// wall with a door, only the narrower one is an opening.
-const APART: f64 = 0.45;
-/// The most openings; wider ones are left out.
-const MOST_OPENINGS: usize = 500;
-/// Passages are too narrow for ways if they are narrower than the least width by more than this, meters.
-const EXACT: f64 = 1e-6;
-/// Doors reach this far into the walls at their ends, so that rounding leaves no gap, meters.
-const INTO_WALLS: f64 = 0.01;
-/// A side of a triangle this near to a passage is a part of it, meters.
-const SAME: f64 = 1e-5;
-/// Lines are shortened by this at both ends, meters.
-const MARGIN: f64 = 0.01;
-
-/// A door of a scene.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Door {
-    /// Its ends, meters.
-    pub line: [Vector; 2],
-    /// The number of its place.
-    pub place: u16,
-    /// Whether people pass it only from the left to the right of its line.
-    pub one_way: bool,
-}
-
-/// The number of an opening with the direction in which agents pass it: step 2 k + s leads through opening k into the
-/// second room (s = 1) or into the first.
-pub type Step = u32;
-
-/// An opening between two rooms.
-#[derive(Debug, Clone)]
-pub struct Opening {
-    /// Its straight parts, meters.
-    pieces: Vec<[Vector; 2]>,
-    /// The rooms on its two sides.
-    rooms: [u32; 2],
-    /// Triangles beside its middle, in these rooms.
-    beside: [u32; 2],
-    /// The number of the place of the door, and the step in which it can be passed, if it is a one-way door.
-    door: Option<(u16, Option<usize>)>,
-    /// The ways to it in its two rooms.
-    map: PathMap,
-}
-
-impl Opening {
-    /// Its width, meters.
-    pub fn width(&self) -> f64 {
-        self.pieces.iter().map(|[a, b]| (b - a).norm()).sum()
-    }
-
-    /// The middle of its longest part, meters.
-    pub fn middle(&self) -> Vector {
-        let longest = self.longest();
-        0.5 * (longest[0] + longest[1])
-    }
-
-    /// Its straight parts, meters.
-    pub fn pieces(&self) -> &[[Vector; 2]] {
-        &self.pieces
-    }
-
-    /// The number of its place, if it is a door of the scene.
-    pub fn door(&self) -> Option<u16> {
-        self.door.map(|(place, _)| place)
-    }
-
-    fn longest(&self) -> [Vector; 2] {
-        let length = |[a, b]: &[Vector; 2]| (b - a).norm_squared();
-        let all = self.pieces.iter().copied();
-        all.reduce(|a, b| if length(&b) > length(&a) { b } else { a })
-            .unwrap_or_default()
-    }
-}
-
 /// The rooms of a floor, and the ways in them.
 #[derive(Debug, Clone)]
 pub struct Rooms {
@@ -116,152 +44,6 @@ pub struct Rooms {
     last: Vec<Vec<(Step, f64)>>,
     /// For each goal, the lengths of the shortest ways from each step, meters.
     lengths: Vec<Vec<f64>>,
-}
-
-/// A closed side of triangles, as it is found: the cut that it belongs to, its ends and the triangles beside it.
-struct Closed {
-    cut: usize,
-    ends: [Vector; 2],
-    beside: [u32; 2],
-}
-
-/// Passages and doors that divide a floor.
-#[derive(Clone)]
-struct Cuts {
-    /// The passages that are too narrow for ways come first.
-    passages: Vec<Narrow>,
-    too_narrow: usize,
-    /// Their ends, meters, then those of doors.
-    lines: Vec<[Vector; 2]>,
-    doors: Vec<Door>,
-}
-
-impl Cuts {
-    /// The passages up to `widest` meters and the doors of a floor with this triangulation.
-    fn of(mesh: &Mesh, least_width: f64, widest: f64, doors: &[Door]) -> Self {
-        let ends = |passage: &Narrow| {
-            let to = match passage.to {
-                End::Corner(corner) => mesh.point(corner),
-                End::Wall { at, .. } => at,
-            };
-            [mesh.point(passage.from), to]
-        };
-        let width = |[a, b]: &[Vector; 2]| (b - a).norm();
-        let mut found: Vec<(Narrow, [Vector; 2])> = narrow(mesh, widest.max(least_width))
-            .into_iter()
-            .map(|passage| (passage, ends(&passage)))
-            .collect();
-        found.sort_by(|a, b| width(&a.1).total_cmp(&width(&b.1)));
-        let is_narrow = |line: &[Vector; 2]| width(line) < least_width - EXACT;
-        let too_narrow = found.iter().filter(|(_, line)| is_narrow(line)).count();
-        let long = doors.iter().map(|door| {
-            let [a, b] = door.line;
-            let more = direction(b - a) * INTO_WALLS;
-            [a - more, b + more]
-        });
-        let long: Vec<[Vector; 2]> = long.collect();
-        let mut kept: Vec<(Narrow, [Vector; 2])> = Vec::new();
-        for (k, one) in found.into_iter().enumerate() {
-            let is_near = |other: &(Narrow, [Vector; 2])| {
-                let middle = |[a, b]: [Vector; 2]| 0.5 * (a + b);
-                (middle(one.1) - middle(other.1)).norm() < APART * width(&other.1)
-            };
-            let is_free = || {
-                kept.len() < too_narrow + MOST_OPENINGS
-                    && !kept[too_narrow..].iter().any(is_near)
-                    && !long.iter().any(|&door| meet(door, one.1))
-            };
-            if k < too_narrow || is_free() {
-                kept.push(one);
-            }
-        }
-        let (passages, lines): (Vec<Narrow>, Vec<_>) = kept.into_iter().unzip();
-        Self {
-            passages,
-            too_narrow,
-            lines: lines.into_iter().chain(long).collect(),
-            doors: doors.to_vec(),
-        }
-    }
-
-    /// The door with the number of this cut.
-    fn door(&self, cut: usize) -> Option<&Door> {
-        self.doors.get(cut.checked_sub(self.passages.len())?)
-    }
-
-    fn mesh(&self, areas: &[Area]) -> Result<Mesh, WayError> {
-        let doors = &self.lines[self.passages.len()..];
-        Mesh::divided(areas, &self.passages, doors)
-    }
-
-    /// The closed sides of a triangulation.
-    fn sides(&self, mesh: &Mesh) -> Vec<Closed> {
-        let mut found = Vec::new();
-        for t in 0..mesh.triangles().len() as u32 {
-            let (triangle, corners) = (mesh.triangle(t), mesh.corners(t));
-            for k in 0..3 {
-                let Some(other) = triangle.closed[k].filter(|&other| other > t) else {
-                    continue;
-                };
-                let ends = [corners[k], corners[(k + 1) % 3]];
-                let is_on = |line: &[Vector; 2]| {
-                    let mut ends = ends.iter();
-                    ends.all(|&end| to_segment(end, line[0], line[1]) < SAME)
-                };
-                found.extend(self.lines.iter().position(is_on).map(|cut| Closed {
-                    cut,
-                    ends,
-                    beside: [t, other],
-                }));
-            }
-        }
-        found
-    }
-
-    /// Keeps only those cuts that lie between two rooms.
-    fn keep_separating(&mut self, sides: &[Closed], room: &[u32]) {
-        let mut separates = vec![false; self.lines.len()];
-        separates[..self.too_narrow].fill(true);
-        for side in sides {
-            let [a, b] = side.beside.map(|t| room[t as usize]);
-            separates[side.cut] |= a != b;
-        }
-        separates[self.passages.len()..].fill(true);
-        let mut kept = separates.iter();
-        self.lines.retain(|_| *kept.next().unwrap_or(&true));
-        let mut kept = separates.iter();
-        self.passages.retain(|_| *kept.next().unwrap_or(&true));
-    }
-}
-
-/// Whether two segments cross or touch.
-fn meet([a, b]: [Vector; 2], [c, d]: [Vector; 2]) -> bool {
-    let apart = |a, b, p, q| {
-        let [p, q] = [p, q].map(|p| side(a, b, p));
-        (p > 0.0 && q > 0.0) || (p < 0.0 && q < 0.0)
-    };
-    !apart(a, b, c, d) && !apart(c, d, a, b)
-}
-
-/// The parts of a triangulation that are connected without closed sides: the number of each triangle's part.
-fn parts(mesh: &Mesh) -> Vec<u32> {
-    const NONE: u32 = u32::MAX;
-    let mut part = vec![NONE; mesh.triangles().len()];
-    let mut count = 0;
-    for start in 0..part.len() as u32 {
-        if part[start as usize] != NONE {
-            continue;
-        }
-        let mut waiting = vec![start];
-        while let Some(t) = waiting.pop() {
-            if part[t as usize] == NONE {
-                part[t as usize] = count;
-                waiting.extend(mesh.triangle(t).across.iter().flatten());
-            }
-        }
-        count += 1;
-    }
-    part
 }
 
 impl Rooms {
@@ -341,9 +123,14 @@ impl Rooms {
         let steps = self.steps_out(self.room(t)).iter();
         let through = steps.filter_map(|&step| {
             let onward = self.lengths[goal][step as usize];
-            onward.is_finite().then_some(self.length_to(p, t, step)? + onward)
+            onward
+                .is_finite()
+                .then_some(self.length_to(p, t, step)? + onward)
         });
-        direct.into_iter().chain(through).fold(f64::INFINITY, f64::min)
+        direct
+            .into_iter()
+            .chain(through)
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a door is an opening between two rooms.
@@ -412,6 +199,13 @@ impl Rooms {
         &self.out[room as usize]
     }
 
+    /// The length of the longest way from another opening of its room to the opening of a step, meters; infinite if the
+    /// room has no other.
+    pub fn depth(&self, step: Step) -> f64 {
+        let lengths = self.before[step as usize].iter().map(|&(_, length)| length);
+        lengths.reduce(f64::max).unwrap_or(f64::INFINITY)
+    }
+
     /// The step from one room to another whose opening is nearest to `p`; `None` if there is none.
     pub fn step_between(&self, from: u32, to: u32, p: Vector) -> Option<Step> {
         let steps = (0..self.steps()).filter(|&s| self.source(s) == from && self.target(s) == to);
@@ -446,7 +240,11 @@ impl Rooms {
         let [a, b] = opening.longest();
         let across = perpendicular(direction(b - a));
         let inside = self.floor.mesh.middle(opening.beside[step as usize % 2]);
-        if across.dot(&(inside - a)) > 0.0 { across } else { -across }
+        if across.dot(&(inside - a)) > 0.0 {
+            across
+        } else {
+            -across
+        }
     }
 
     /// The first of the steps out of the room of triangle `t` that a way over `points` from `p` takes; `None` if it
@@ -527,70 +325,4 @@ impl Rooms {
         let t = opening.beside[step as usize % 2];
         Some(map.way(&self.floor, opening.middle(), t, None)?.length)
     }
-}
-
-/// The points of a way from `p`, whose corners are moved off their walls: openings end at corners, and walls go on behind
-/// them.
-fn beside_corners(p: Vector, points: &[Vector]) -> Vec<Vector> {
-    let mut beside = vec![p];
-    for (k, &point) in points.iter().enumerate() {
-        let before = if k == 0 { p } else { points[k - 1] };
-        let away = points.get(k + 1).map_or(Vector::zeros(), |next| {
-            // The wall is on the side to which the way turns.
-            direction(direction(point - before) - direction(next - point))
-        });
-        beside.push(point + away * OFF_WALLS);
-    }
-    beside
-}
-
-/// Corners are moved off their walls by this, meters.
-const OFF_WALLS: f64 = 1e-3;
-
-/// The part of a straight way before it crosses an opening; `None` if it does not.
-fn crossing([a, b]: [Vector; 2], [from, to]: [Vector; 2]) -> Option<f64> {
-    let (along, way) = (b - a, to - from);
-    let across = way.perp(&along);
-    let part = (a - from).perp(&along) / across;
-    let share = (a - from).perp(&way) / across;
-    let is_crossed = (0.0..=1.0).contains(&share) && (0.0..=1.0).contains(&part);
-    is_crossed.then_some(part)
-}
-
-/// The openings between rooms.
-fn openings(floor: &Floor, cuts: &Cuts, room: &[u32]) -> Result<Vec<Opening>, WayError> {
-    let mut sides: BTreeMap<(usize, [u32; 2]), Vec<Closed>> = BTreeMap::new();
-    for mut side in cuts.sides(&floor.mesh) {
-        let rooms = side.beside.map(|t| room[t as usize]);
-        if side.cut < cuts.too_narrow || rooms[0] == rooms[1] {
-            continue;
-        }
-        if rooms[0] > rooms[1] {
-            side.beside.reverse();
-        }
-        let key = (side.cut, [rooms[0].min(rooms[1]), rooms[0].max(rooms[1])]);
-        sides.entry(key).or_default().push(side);
-    }
-    let all: Vec<_> = sides.into_iter().collect();
-    let made = all.into_par_iter().map(|((cut, rooms), mut sides)| {
-        let length = |side: &Closed| (side.ends[1] - side.ends[0]).norm();
-        sides.sort_by(|a, b| length(b).total_cmp(&length(a)));
-        let beside = sides[0].beside;
-        let pieces: Vec<[Vector; 2]> = sides.iter().map(|side| side.ends).collect();
-        let goals: Vec<Goal> = pieces.iter().map(|&piece| Goal::Line(piece)).collect();
-        let door = cuts.door(cut).map(|door| {
-            let [a, b] = door.line;
-            // People pass from the left to the right of the line.
-            let is_left = side(a, b, floor.mesh.middle(beside[1])) > 0.0;
-            (door.place, door.one_way.then_some(usize::from(!is_left)))
-        });
-        Ok(Opening {
-            map: PathMap::within(floor, &goals, MARGIN)?,
-            pieces,
-            rooms,
-            beside,
-            door,
-        })
-    });
-    made.collect()
 }

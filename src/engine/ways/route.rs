@@ -7,7 +7,9 @@ use super::corner::Bend;
 use super::floor::Floor;
 use super::goal::Goal;
 use super::map::{Next, PathMap, SLACK, Way};
-use super::rooms::{Rooms, Step};
+use super::opening::Step;
+use super::plan::Detour;
+use super::rooms::Rooms;
 use super::steer::{End, around, between_borders};
 use super::targets::Source;
 use super::{MOST_GOALS, WayError};
@@ -39,15 +41,6 @@ pub struct Ways {
     pub(super) maps: Vec<PathMap>,
     /// The rooms of the floor, for ways by time and through doors.
     pub rooms: Option<Rooms>,
-}
-
-/// Another way than the shortest one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Detour {
-    /// Through the opening of this step, which leads out of the room.
-    Opening(Step),
-    /// To the goal without leaving the room.
-    Room,
 }
 
 /// The path map that a route follows.
@@ -189,6 +182,11 @@ impl Ways {
         is_known && route.chart.is_none_or(|chart| self.on(chart).is_some())
     }
 
+    /// The path map of a route, and the floor on which it lies.
+    pub(super) fn map_of(&self, route: &Route) -> Option<(&Floor, &PathMap)> {
+        self.on(route.chart?)
+    }
+
     /// The path map of a chart, and the floor on which it lies.
     fn on(&self, chart: Chart) -> Option<(&Floor, &PathMap)> {
         let rooms = self.rooms.as_ref();
@@ -214,7 +212,7 @@ impl Ways {
     }
 
     /// The floor of a route.
-    fn floor_of(&self, route: &Route) -> &Floor {
+    pub(super) fn floor_of(&self, route: &Route) -> &Floor {
         let on = route.chart.and_then(|chart| self.on(chart));
         on.map_or(&self.floor, |(floor, _)| floor)
     }
@@ -283,7 +281,10 @@ impl Ways {
                 Some(around(floor, at, corner, route.clearance))
             }
             Next::Goal(end) => {
-                let map = route.chart.and_then(|chart| self.on(chart)).map(|(_, map)| map);
+                let map = route
+                    .chart
+                    .and_then(|chart| self.on(chart))
+                    .map(|(_, map)| map);
                 let source = map.and_then(|map| map.source(way.entry));
                 // Agents that see a goal point from their start, or have a goal line in front of them, walk straight if
                 // their bodies fit. They pass the end of a line like the jamb of a door.
@@ -325,7 +326,7 @@ impl Ways {
                 return Some(way);
             }
         }
-        let held = first(floor, route).bend();
+        let held = route.first(floor).bend();
         let here = floor.locate_from(route.triangle, p);
         let here = here.or_else(|| floor.nearest(p))?;
         let way = map.way(floor, p, here, held)?;
@@ -349,9 +350,6 @@ impl Route {
 /// The aim of an agent that walks to a corner is at least this far away, meters.
 const NEAREST: f64 = 1.0;
 
-/// The most points of a course, far more than the corners of any way.
-const MOST_POINTS: usize = 10_000;
-
 impl Ways {
     /// Whether there is a path map to this destination.
     pub fn leads_to(&self, to: Destination) -> bool {
@@ -363,28 +361,6 @@ impl Ways {
         &self.goals
     }
 
-    /// The points of the shortest way from `p`, meters: its corners in order, then its end. Empty if there is no way.
-    pub fn course(&self, p: Vector, to: Destination) -> Vec<Vector> {
-        let first = self.map_to(to).zip(self.way(p, to));
-        first.map_or(Vec::new(), |(map, way)| {
-            points(&self.floor, &self.maps[usize::from(map)], way.next)
-        })
-    }
-
-    /// The points of the rest of a route, as in [`course`](Self::course); of a detour, those up to its opening.
-    pub fn course_of(&self, route: &Route) -> Vec<Vector> {
-        match route.chart.and_then(|chart| self.on(chart)) {
-            Some((floor, map)) => points(floor, map, first(floor, route)),
-            None => vec![self.next(route)],
-        }
-    }
-
-    /// The point that an agent on `route` walks to next, meters: a corner or its goal.
-    pub fn next(&self, route: &Route) -> Vector {
-        let floor = self.floor_of(route);
-        first(floor, route).place(floor)
-    }
-
     /// The memory of the floor and the maps, and of building the largest, bytes.
     pub fn bytes(&self) -> usize {
         let maps = self.maps.iter().map(PathMap::bytes);
@@ -394,41 +370,19 @@ impl Ways {
     }
 }
 
-/// What comes first on a route over this floor.
-fn first(floor: &Floor, route: &Route) -> Next {
-    match route.first {
-        First::Corner(bend) => Next::Corner {
-            bend,
-            borders: [floor.place(bend); 2],
-        },
-        First::End(point) => Next::Goal(point),
-        First::Out(point) => Next::Out(point),
-    }
-}
-
-/// The points of the way that begins with `first`, meters.
-pub(super) fn points(floor: &Floor, map: &PathMap, first: Next) -> Vec<Vector> {
-    let (mut points, mut next) = (Vec::new(), Some(first));
-    while let Some(now) = next.take_if(|_| points.len() < MOST_POINTS) {
-        match now {
-            Next::Goal(point) => points.push(point),
-            Next::Corner { bend, .. } => {
-                let bends = std::iter::successors(Some(bend), |bend| map.after(*bend));
-                let bends: Vec<_> = bends.take(MOST_POINTS).collect();
-                points.extend(bends.iter().map(|&bend| floor.place(bend)));
-                let last = bends.last();
-                points.extend(last.and_then(|&bend| map.end_after(floor, bend)));
-            }
-            Next::Out(point) => {
-                points.push(point);
-                next = map.way_from(floor, point).map(|way| way.next);
-            }
+impl Route {
+    /// What comes first on the route over this floor.
+    pub(super) fn first(&self, floor: &Floor) -> Next {
+        match self.first {
+            First::Corner(bend) => Next::Corner {
+                bend,
+                borders: [floor.place(bend); 2],
+            },
+            First::End(point) => Next::Goal(point),
+            First::Out(point) => Next::Out(point),
         }
     }
-    points
-}
 
-impl Route {
     /// Whether an agent at `position` still follows the route.
     #[inline]
     pub fn holds(&self, position: Vector) -> bool {

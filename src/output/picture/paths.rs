@@ -156,7 +156,10 @@ fn way(start: Vector, course: Vec<Vector>, frame: &Frame) -> Vec<Mark> {
 
 /// The openings before which agents wait for a while, in the colors of recordings.
 fn waits(simulation: &Simulation) -> Vec<Mark> {
-    let openings = simulation.scene().rooms().map_or(&[][..], |rooms| rooms.openings());
+    let openings = simulation
+        .scene()
+        .rooms()
+        .map_or(&[][..], |rooms| rooms.openings());
     let waits = openings.iter().zip(simulation.waits());
     let long = waits.filter(|(_, wait)| *wait >= LEAST_WAIT);
     let marks = long.flat_map(|(opening, wait)| {

@@ -136,7 +136,8 @@ impl Found<'_> {
             let near = suggestion(name, known.clone());
             let known: Vec<String> = known.map(|name| format!("`{name}`")).collect();
             let known = match known.as_slice() {
-                [] => "; the scenario has no exits, waypoints, waiting areas, queues or doors".to_owned(),
+                [] => "; the scenario has no exits, waypoints, waiting areas, queues or doors"
+                    .to_owned(),
                 names if near.is_empty() => format!("; there are {}", names.join(", ")),
                 _ => String::new(),
             };
@@ -175,8 +176,8 @@ impl Found<'_> {
         let is_exit = |&place: &u16| self.journeys.places[usize::from(place)].is_exit();
         let early = stages.split_last().and_then(|(_, before)| {
             before.iter().position(|stage| {
-                let leaves_some = matches!(stage.choice, Choice::Shares(_))
-                    && !stage.places.iter().all(is_exit);
+                let leaves_some =
+                    matches!(stage.choice, Choice::Shares(_)) && !stage.places.iter().all(is_exit);
                 stage.places.iter().any(is_exit) && !leaves_some
             })
         });

@@ -34,7 +34,8 @@ pub fn door(given: &places::Door) -> Result<Kind, Problem> {
     let ahead = given.one_way.map(Vector::from);
     let right = ahead.map(|way| (b - a).perp(&way));
     if right.is_some_and(|right| right.abs() <= ROUNDING * ahead.unwrap_or_default().norm()) {
-        let reason = "points along the line; give the direction [x, y] in which people pass the door";
+        let reason =
+            "points along the line; give the direction [x, y] in which people pass the door";
         return Err(Problem::new("one_way", reason));
     }
     let is_left = right.is_some_and(|right| right > 0.0);

@@ -1,0 +1,224 @@
+//! The times that agents expect for the ways through openings.
+
+use super::bound;
+use super::{Crowd, Progress, Simulation};
+use crate::engine::math::Vector;
+use crate::engine::scene::{Knowledge, Scene};
+use crate::engine::ways::{Destination, Rooms, Step};
+
+/// Waiting before a closed door is expected to take this long, seconds.
+const CLOSED: f64 = 3600.0;
+
+/// Agents do not pass each other in narrower openings, meters.
+const SINGLE_FILE: f64 = 1.0;
+/// Slower agents are expected to walk at this speed, m/s.
+const SLOWEST: f64 = 0.05;
+
+/// A way through an opening goes on from a point this far behind it, meters.
+const BEYOND: f64 = 1e-3;
+
+/// The times that agents expect.
+pub(super) struct Times<'a> {
+    pub rooms: &'a Rooms,
+    pub scene: &'a Scene,
+    pub progress: &'a Progress,
+    /// The flow that follows from the width of an opening, P/(m s).
+    pub per_meter: f64,
+}
+
+/// A way out of a room, or to a goal in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outlook {
+    /// The step by which it leaves the room; `None`: the goal is there.
+    pub step: Option<Step>,
+    /// The length of the way to the opening, or to the goal, meters.
+    pub length: f64,
+    /// Agents that pass the opening before: those that are nearer to it, and those that come from the other side.
+    pub ahead: u32,
+    /// Its flow, P/s; infinite at the goal.
+    pub flow: f64,
+    /// The time until the agent has passed the opening, seconds.
+    pub until_through: f64,
+    /// The time to the goal, seconds.
+    pub total: f64,
+}
+
+impl Times<'_> {
+    /// The flow of a step, P/s.
+    pub fn flow(&self, step: Step) -> f64 {
+        let expected = self.per_meter * self.rooms.opening(step).width();
+        let stream = self.progress.steps.get(step as usize);
+        stream.map_or(expected, |stream| stream.flow(expected))
+    }
+
+    /// The time to walk `length` meters and pass the opening of a step (`None`: to arrive), seconds. `sees`: knowing
+    /// who waits there.
+    fn leg(&self, step: Option<Step>, length: f64, (speed, sees): (f64, bool)) -> f64 {
+        let walking = length / speed;
+        let Some(step) = step else {
+            return walking;
+        };
+        let door = self.rooms.opening(step).door();
+        let state = door.and_then(|door| self.progress.places.get(usize::from(door)));
+        let closed = if state.is_some_and(|state| !state.open) {
+            CLOSED
+        } else {
+            0.0
+        };
+        let waiting = match sees && self.scene.by_time() {
+            true => f64::from(self.ahead(step, length)) / self.flow(step),
+            false => 0.0,
+        };
+        walking.max(waiting) + closed
+    }
+
+    /// The number of agents that pass the opening of a step before one that is `length` meters away: those bound for it
+    /// that are nearer, and those that come from the other side. Where two cannot pass each other, all of these.
+    fn ahead(&self, step: Step, length: f64) -> u32 {
+        let streams = [step, step ^ 1].map(|step| self.progress.steps.get(step as usize));
+        let [Some(own), Some(other)] = streams else {
+            return 0;
+        };
+        let oncoming = match self.rooms.opening(step).width() < SINGLE_FILE {
+            true => other.bound(),
+            false => other.nearer_than(length.max(bound::BEFORE)),
+        };
+        own.nearer_than(length) + oncoming
+    }
+
+    /// The least times from each step to a goal, seconds, for agents that walk at the scene's speed.
+    pub fn onward(&self, goal: usize) -> Vec<f64> {
+        let sees = self.scene.routing.knowledge == Knowledge::Floor;
+        let speed = self.scene.preferred_speed.max(SLOWEST);
+        let leg = |step, length| self.leg(step, length, (speed, sees));
+        self.rooms.onward(goal, leg)
+    }
+
+    /// The ways out of the room of `p`, in triangle `t`, that lead to a goal; `onward` are the times beyond.
+    pub fn outlooks(
+        &self,
+        (p, t): (Vector, u32),
+        goal: usize,
+        onward: &[f64],
+        speed: f64,
+    ) -> Vec<Outlook> {
+        let speed = speed.max(SLOWEST);
+        let direct = self.rooms.length_to_goal(p, t, goal).map(|length| Outlook {
+            step: None,
+            length,
+            ahead: 0,
+            flow: f64::INFINITY,
+            until_through: length / speed,
+            total: length / speed,
+        });
+        let steps = self.rooms.steps_out(self.rooms.room(t)).iter();
+        let through = steps.filter_map(|&step| {
+            let onward = onward.get(step as usize).filter(|time| time.is_finite())?;
+            let length = self.rooms.length_to(p, t, step)?;
+            let until_through = self.leg(Some(step), length, (speed, true));
+            Some(Outlook {
+                step: Some(step),
+                length,
+                ahead: self.ahead(step, length),
+                flow: self.flow(step),
+                until_through,
+                total: until_through + onward,
+            })
+        });
+        direct.into_iter().chain(through).collect()
+    }
+}
+
+impl Simulation {
+    /// The points of the way from `p` that takes the least time now, meters: its corners, the places where it crosses
+    /// openings, and its end. The shortest way if agents do not choose by time.
+    pub fn course(&self, p: Vector, to: Destination) -> Vec<Vector> {
+        let (scene, crowd) = (&self.fixed.scene, &self.crowd);
+        let Some(ways) = &scene.ways else {
+            return Vec::new();
+        };
+        let known = (crowd.times(scene), ways.map_to(to));
+        let (Some(times), Some(goal)) = known else {
+            return ways.course(p, to);
+        };
+        let (rooms, goal) = (times.rooms, usize::from(goal));
+        let onward = times.onward(goal);
+        let (mut points, mut here) = (Vec::new(), p);
+        for _ in 0..=rooms.steps() {
+            let Some(t) = rooms
+                .floor
+                .locate(here)
+                .or_else(|| rooms.floor.nearest(here))
+            else {
+                break;
+            };
+            let all = times.outlooks((here, t), goal, &onward, scene.preferred_speed);
+            let Some(best) = all.into_iter().min_by(|a, b| a.total.total_cmp(&b.total)) else {
+                break;
+            };
+            let shortest = ways.course(here, to);
+            if rooms.first_on(here, t, &shortest) == best.step && best.step.is_none() {
+                points.extend(shortest);
+                break;
+            }
+            points.extend(rooms.course((here, t), goal, best.step));
+            let Some((step, &end)) = best.step.zip(points.last()) else {
+                break;
+            };
+            here = end + rooms.ahead(step) * BEYOND;
+        }
+        points
+    }
+
+    /// The waiting time before each opening, seconds: that of an agent that comes last, beyond its walk. One for each
+    /// opening of the scene's rooms, the longer one of both directions.
+    pub fn waits(&self) -> Vec<f64> {
+        let (scene, crowd) = (&self.fixed.scene, &self.crowd);
+        let Some(times) = crowd.times(scene) else {
+            return Vec::new();
+        };
+        let wait = |step: Step| {
+            let stream = crowd.progress.steps.get(step as usize);
+            stream.map_or(0.0, |stream| f64::from(stream.bound()) / times.flow(step))
+        };
+        let openings = 0..times.rooms.openings().len() as Step;
+        openings.map(|k| wait(2 * k).max(wait(2 * k + 1))).collect()
+    }
+}
+
+impl Crowd {
+    /// The times that agents expect now.
+    pub(super) fn times<'a>(&'a self, scene: &'a Scene) -> Option<Times<'a>> {
+        let rooms = scene.rooms()?;
+        Some(Times {
+            rooms,
+            scene,
+            progress: &self.progress,
+            per_meter: self.flow_per_meter(),
+        })
+    }
+
+    /// The ways out of the room of agent `i`, in triangle `t`, that lead to a goal.
+    pub(super) fn outlooks_of(&self, scene: &Scene, i: usize, goal: u16, t: u32) -> Vec<Outlook> {
+        let goal = usize::from(goal);
+        let onward = self.progress.onward.get(goal);
+        let (Some(times), Some(onward)) = (self.times(scene), onward) else {
+            return Vec::new();
+        };
+        let own = self.agents.preferred_speed.get(i).copied();
+        let speed = own.unwrap_or(scene.preferred_speed);
+        times.outlooks((self.agents.position[i], t), goal, onward, speed)
+    }
+
+    /// The time that agent `i` expects for the way to a goal, seconds; `None` if it is not known.
+    pub(super) fn time_to(&self, scene: &Scene, i: usize, goal: u16) -> Option<f64> {
+        let rooms = scene.rooms().filter(|_| scene.by_time())?;
+        let p = self.agents.position[i];
+        let plan = self.agents.plan.get(i).copied().flatten();
+        let before = plan.map(|plan| plan.triangle);
+        let here =
+            before.map_or_else(|| rooms.floor.locate(p), |t| rooms.floor.locate_from(t, p))?;
+        let all = self.outlooks_of(scene, i, goal, here).into_iter();
+        all.map(|outlook| outlook.total).reduce(f64::min)
+    }
+}

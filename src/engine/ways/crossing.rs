@@ -1,0 +1,31 @@
+//! Where ways cross openings.
+
+use crate::engine::math::{Vector, direction};
+
+/// The points of a way from `p`, whose corners are moved off their walls: openings end at corners, and walls go on behind
+/// them.
+pub fn beside_corners(p: Vector, points: &[Vector]) -> Vec<Vector> {
+    let mut beside = vec![p];
+    for (k, &point) in points.iter().enumerate() {
+        let before = if k == 0 { p } else { points[k - 1] };
+        let away = points.get(k + 1).map_or(Vector::zeros(), |next| {
+            // The wall is on the side to which the way turns.
+            direction(direction(point - before) - direction(next - point))
+        });
+        beside.push(point + away * OFF_WALLS);
+    }
+    beside
+}
+
+/// Corners are moved off their walls by this, meters.
+const OFF_WALLS: f64 = 1e-3;
+
+/// The part of a straight way before it crosses an opening; `None` if it does not.
+pub fn crossing([a, b]: [Vector; 2], [from, to]: [Vector; 2]) -> Option<f64> {
+    let (along, way) = (b - a, to - from);
+    let across = way.perp(&along);
+    let part = (a - from).perp(&along) / across;
+    let share = (a - from).perp(&way) / across;
+    let is_crossed = (0.0..=1.0).contains(&share) && (0.0..=1.0).contains(&part);
+    is_crossed.then_some(part)
+}
