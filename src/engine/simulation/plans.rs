@@ -109,8 +109,8 @@ impl Crowd {
         }
     }
 
-    /// The agents that enter a room, have a new goal or compare their ways again, in a fixed order. The others only note
-    /// where they are.
+    /// The agents that enter a room, have a new goal or compare their ways again, in a fixed order. The others only
+    /// note where they are.
     fn due(&mut self, ways: &Ways, rooms: &Rooms) -> Vec<Due> {
         let mut plans = std::mem::take(&mut self.agents.plan);
         plans.resize(self.agents.len(), None);

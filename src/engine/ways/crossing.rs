@@ -2,8 +2,8 @@
 
 use crate::engine::math::{Vector, direction};
 
-/// The points of a way from `p`, whose corners are moved off their walls: openings end at corners, and walls go on behind
-/// them.
+/// The points of a way from `p`, whose corners are moved off their walls: openings end at corners, and walls go on
+/// behind them.
 pub fn beside_corners(p: Vector, points: &[Vector]) -> Vec<Vector> {
     let mut beside = vec![p];
     for (k, &point) in points.iter().enumerate() {
@@ -20,12 +20,15 @@ pub fn beside_corners(p: Vector, points: &[Vector]) -> Vec<Vector> {
 /// Corners are moved off their walls by this, meters.
 const OFF_WALLS: f64 = 1e-3;
 
+/// A straight way that ends this near to an opening, as a part of its length, ends there.
+const TOUCHING: f64 = 1e-7;
+
 /// The part of a straight way before it crosses an opening; `None` if it does not.
 pub fn crossing([a, b]: [Vector; 2], [from, to]: [Vector; 2]) -> Option<f64> {
     let (along, way) = (b - a, to - from);
     let across = way.perp(&along);
     let part = (a - from).perp(&along) / across;
     let share = (a - from).perp(&way) / across;
-    let is_crossed = (0.0..=1.0).contains(&share) && (0.0..=1.0).contains(&part);
+    let is_crossed = (0.0..=1.0).contains(&share) && (0.0..1.0 - TOUCHING).contains(&part);
     is_crossed.then_some(part)
 }

@@ -80,7 +80,9 @@ impl Cuts {
             let is_free = || {
                 kept.len() < too_narrow + MOST_OPENINGS
                     && !kept[too_narrow..].iter().any(is_near)
-                    && !long.iter().any(|&door| meet(door, one.1))
+                    && !long
+                        .iter()
+                        .any(|&door| meet(door, one.1) || is_near(&(one.0, door)))
             };
             if k < too_narrow || is_free() {
                 kept.push(one);

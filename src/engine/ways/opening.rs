@@ -10,7 +10,7 @@ use super::floor::Floor;
 use super::goal::Goal;
 use super::map::PathMap;
 use super::mesh::side;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, direction, perpendicular};
 
 /// Lines are shortened by this at both ends, meters.
 pub const MARGIN: f64 = 0.01;
@@ -65,6 +65,15 @@ impl Opening {
     }
 }
 
+/// Ways end this far before a line that can lie on an opening, meters.
+const BEFORE: f64 = 1e-4;
+
+/// Lines beside a line, one on each side: on an opening, only they are seen from both rooms.
+pub fn on_both_sides([a, b]: [Vector; 2]) -> [Goal; 2] {
+    let aside = perpendicular(direction(b - a)) * BEFORE;
+    [aside, -aside].map(|aside| Goal::Line([a + aside, b + aside]))
+}
+
 /// The openings between rooms.
 pub fn openings(floor: &Floor, cuts: &Cuts, room: &[u32]) -> Result<Vec<Opening>, WayError> {
     let mut sides: BTreeMap<(usize, [u32; 2]), Vec<Closed>> = BTreeMap::new();
@@ -85,7 +94,10 @@ pub fn openings(floor: &Floor, cuts: &Cuts, room: &[u32]) -> Result<Vec<Opening>
         sides.sort_by(|a, b| length(b).total_cmp(&length(a)));
         let beside = sides[0].beside;
         let pieces: Vec<[Vector; 2]> = sides.iter().map(|side| side.ends).collect();
-        let goals: Vec<Goal> = pieces.iter().map(|&piece| Goal::Line(piece)).collect();
+        let goals: Vec<Goal> = pieces
+            .iter()
+            .flat_map(|&piece| on_both_sides(piece))
+            .collect();
         let door = cuts.door(cut).map(|door| {
             let [a, b] = door.line;
             // People pass from the left to the right of the line.

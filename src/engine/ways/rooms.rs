@@ -18,7 +18,7 @@ use super::floor::Floor;
 use super::goal::Goal;
 use super::map::PathMap;
 use super::mesh::{Mesh, to_segment};
-use super::opening::{MARGIN, Opening, Step, openings};
+use super::opening::{MARGIN, Opening, Step, on_both_sides, openings};
 use crate::engine::geometry::Area;
 use crate::engine::math::{Vector, direction, perpendicular};
 
@@ -96,7 +96,12 @@ impl Rooms {
     /// # Errors
     /// The goal is not on the floor.
     pub fn add_goal(&mut self, goals: &[Goal], replaced: Option<usize>) -> Result<(), WayError> {
-        let map = PathMap::within(&self.floor, goals, MARGIN)?;
+        let goals = goals.iter().flat_map(|goal| match *goal {
+            Goal::Point(_) => vec![goal.clone()],
+            Goal::Line(ends) => on_both_sides(ends).to_vec(),
+        });
+        let goals: Vec<Goal> = goals.collect();
+        let map = PathMap::within(&self.floor, &goals, MARGIN)?;
         let steps = 0..self.steps();
         let last = steps.filter_map(|step| Some((step, self.length_after(step, &map)?)));
         let last = last.collect();

@@ -121,12 +121,13 @@ pub fn ways(
     Ok(is_needed.then(|| Arc::new(ways)))
 }
 
-/// A note on large crowds on a floor plan whose agents take the shortest way because the file does not say how they choose.
+/// A note on large crowds on a floor plan whose agents take the shortest way because the file does not say how they
+/// choose.
 fn crowded(keys: &File, scene: &Scene) -> Option<String> {
     let is_plan = keys.walkable_area.is_some() && keys.route_choice.is_none();
     (is_plan && scene.agents.len() >= CROWD).then(|| {
-        "all agents take the shortest way, however many wait there; with `route_choice` `quickest` they take the way of \
-         the least time (`shortest` in the file hides this note)"
+        "all agents take the shortest way, however many wait there; with `route_choice` `quickest` they take the way \
+         of the least time (`shortest` in the file hides this note)"
             .to_owned()
     })
 }

@@ -104,12 +104,12 @@ pub struct File {
     /// stop at walls. Without walls between, both are the same to the last bit.
     #[schemars(schema_with = "word::<WayFinding>")]
     pub navigation: WayFinding,
-    /// By what agents choose ways around walls: `shortest`, or `quickest`, the least expected time, with the people who
-    /// wait before doors, in aisles and in other openings of up to 6 m.
+    /// By what agents choose ways around walls: `shortest`, or `quickest`, the least expected time, with the people
+    /// who wait before doors, in aisles and in other openings of up to 6 m.
     #[schemars(schema_with = "word::<RouteChoice>", extend("default" = RouteChoice::default()))]
     pub route_choice: Option<RouteChoice>,
-    /// What agents know about waiting times, for `quickest`: those of the whole `floor`, or those in `sight`, before the
-    /// openings of the room where they are.
+    /// What agents know about waiting times, for `quickest`: those of the whole `floor`, or those in `sight`, before
+    /// the openings of the room where they are.
     #[schemars(schema_with = "word::<Knowledge>")]
     pub knowledge: Knowledge,
     /// Narrower passages are closed for `paths`, meters. Lower: agents also take gaps in which they get stuck. Default:
@@ -161,8 +161,8 @@ pub struct File {
     pub sources: Vec<Grid>,
     /// Lines through which agents come in, each where there is room.
     pub entrances: Vec<Entrance>,
-    /// Changes at given times: exits and doors open and close, waiting areas are released, and pushes, in which agents that are
-    /// in a region at one moment behave differently for a while.
+    /// Changes at given times: exits and doors open and close, waiting areas are released, and pushes, in which agents
+    /// that are in a region at one moment behave differently for a while.
     pub events: Vec<Event>,
     /// Values to report.
     pub measurements: Vec<Measurement>,
