@@ -124,6 +124,12 @@ impl Journeys {
         zones.filter(move |zone| zone.time.contains(&time) && zone.area.contains(p))
     }
 
+    /// Whether there are doors.
+    pub fn has_doors(&self) -> bool {
+        let mut places = self.places.iter();
+        places.any(|place| matches!(place.kind, Kind::Door(_)))
+    }
+
     /// Whether some agents choose the quickest place.
     pub fn has_quickest(&self) -> bool {
         let mut stages = self.journeys.iter().flat_map(|journey| &journey.stages);

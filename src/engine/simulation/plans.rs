@@ -61,7 +61,7 @@ impl Simulation {
             return;
         }
         self.stages.time(Stage::Ways, || {
-            if scene.journeys.journeys.is_empty() {
+            if scene.journeys.journeys.is_empty() && !scene.journeys.has_doors() {
                 bound::count(crowd, scene);
             }
             crowd.compare_ways(scene, ways);

@@ -138,7 +138,7 @@ impl Simulation {
             let factors = positions.map(|&p| Some(scene.journeys.speed_factor(p, time)));
             factors.collect_into_vec(&mut agents.zone);
         }
-        if !scene.journeys.journeys.is_empty() {
+        if !scene.journeys.journeys.is_empty() || scene.journeys.has_doors() {
             self.stages
                 .time(Stage::Journeys, || crowd.follow_journeys(scene));
         }
