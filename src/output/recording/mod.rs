@@ -62,7 +62,6 @@ use debug::focus::Focus;
 use debug::follow::{Follow, Moment};
 use debug::{arrows, layers, moment};
 use frame::colored_lines::{self, WAITS, WALL_FORCES};
-use frame::events::{Events, Line};
 use frame::{Snapshot, stats};
 use layout::{Content, Kind};
 use scene::{obstacles, ways};

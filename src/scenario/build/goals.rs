@@ -88,7 +88,9 @@ impl Population<'_> {
             }
             Some(name) => journey_named(journeys, name).under("journey").map(Some),
             None if has_goal || self.file.goal.is_some() => Ok(None),
-            None => Ok(TO_EXIT.iter().find_map(|name| journey_named(journeys, name).ok())),
+            None => Ok(TO_EXIT
+                .iter()
+                .find_map(|name| journey_named(journeys, name).ok())),
         }
     }
 
