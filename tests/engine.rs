@@ -45,6 +45,7 @@ mod loads;
 mod lone_agents;
 mod math;
 mod measurements;
+mod narrowings;
 mod needs;
 mod neighbor_lists;
 mod neighbors;
