@@ -132,8 +132,8 @@ fn scenes_with_data_are_compared_with_the_data_and_skipped_without() {
     );
 }
 
-/// Five people in a row, as in the files of the pushes: the first one is at `from`, they look against y, and 0.4 s after
-/// the first frame they walk at 0.5 m/s for 1 s, each 0.16 s after the one behind.
+/// Five people in a row, as in the files of the pushes: the first one is at `from`, and they look against y. From 0.4 s
+/// after the first frame on they walk at 0.5 m/s for 1 s, each 0.16 s after the one behind.
 fn file_of_a_row([x, from]: [f64; 2]) -> String {
     let mut text = "id,frame,x,y\n".to_owned();
     for person in 0..5 {
