@@ -83,8 +83,8 @@ fn the_keys_of_nested_objects_are_documented() {
         (
             "measurements",
             "one of density, flow_of_first, flow_until, egress, evacuated, uncounted, pauses, locked, snapshot, wave, \
-             front, oscillation, contacts, jitter, closest, integrity, speed_by_density, walks, line_flow, exposure, \
-             service_levels, crowd_pressure, body_forces, wall_forces or frame_time",
+             front, push, oscillation, contacts, jitter, closest, integrity, speed_by_density, walks, line_flow, \
+             exposure, service_levels, crowd_pressure, body_forces, wall_forces or frame_time",
         ),
         ("measurements.density", "at_secs, region?"),
         (
@@ -95,8 +95,8 @@ fn the_keys_of_nested_objects_are_documented() {
         ("periodic", "axis, length, from?"),
         (
             "from",
-            "at_secs?, counted?, fps?, goal?, journey?, mass?, motivation?, name?, people?, preferred_speed?, \
-             premovement_secs?, profile?, radius?, remove_within?, trajectory?, unit?, until_secs?",
+            "at_secs?, counted?, fps?, goal?, journey?, mass?, mean_density?, motivation?, name?, people?, \
+             preferred_speed?, premovement_secs?, profile?, radius?, remove_within?, trajectory?, unit?, until_secs?",
         ),
         ("stop", "idle_secs?, when_empty?"),
         (

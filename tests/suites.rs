@@ -14,6 +14,7 @@ use tempfile::TempDir;
 use crate::common::bounded;
 use crate::common::documents::{count, invalid_value, replace};
 use crate::common::program::{run_in, stderr};
+use crate::common::tracks::file_of_a_row;
 
 /// People who enter one by one at `x` meters and walk toward smaller y. Lengths are in units of `unit` meters.
 fn people(head: &str, x: f64, unit: f64) -> String {
@@ -62,6 +63,7 @@ fn checks_of_the_built_in_suites_name_all_runs_and_no_unknown_quantities() {
     let bottleneck = people("# framerate: 25 fps\n# id frame x/m y/m z/m\n", 0.3, 1.0);
     let in_centimeters = people("# id frame x y z\n", 0.3, 0.01);
     let corner = people("# framerate: 16\n# id frame x y z\n", -1.5, 1.0);
+    let force = "0 0\n0.4 20\n0.6 0\n".to_owned();
     for (file, text) in [
         ("040_c_56_h-.txt", &bottleneck),
         ("uo-180-180-180.txt", &in_centimeters),
@@ -70,10 +72,14 @@ fn checks_of_the_built_in_suites_name_all_runs_and_no_unknown_quantities() {
         ("bo-360-090-090.txt", &in_centimeters),
         ("bo-360-160-160.txt", &in_centimeters),
         ("corner.txt", &corner),
+        ("push_tue_15.csv", &file_of_a_row([0.8, 3.37])),
+        ("push_tue_15.txt", &force),
+        ("push_wed_03.csv", &file_of_a_row([-0.1, -1.9])),
+        ("push_wed_03.txt", &force),
     ] {
         fs::write(data.path().join(file), text).unwrap();
     }
-    for (name, count) in [("verification", 26), ("validation", 22)] {
+    for (name, count) in [("verification", 26), ("validation", 24)] {
         let suite = Suite::built_in(name).unwrap();
         assert_eq!(suite.cases.len(), count, "{name}");
         let chosen = Chosen {

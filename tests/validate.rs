@@ -3,6 +3,7 @@
 use std::fs;
 
 use crate::common::program::{refused, run, stderr, text};
+use crate::common::tracks::file_of_a_row;
 use sandbox::lab::suite::{Expected, Judgment};
 
 #[test]
@@ -130,20 +131,6 @@ fn scenes_with_data_are_compared_with_the_data_and_skipped_without() {
         2,
         &["--data", "nowhere", "give the folder"],
     );
-}
-
-/// Five people in a row, as in the files of the pushes: the first one is at `from`, and they look against y. From 0.4 s
-/// after the first frame on they walk at 0.5 m/s for 1 s, each 0.16 s after the one behind.
-fn file_of_a_row([x, from]: [f64; 2]) -> String {
-    let mut text = "id,frame,x,y\n".to_owned();
-    for person in 0..5 {
-        for frame in 0..=100 {
-            let walked = f64::from(frame) / 25.0 - 0.4 - 0.16 * f64::from(person);
-            let y = from - 0.4 * f64::from(person) - 0.5 * walked.clamp(0.0, 1.0);
-            text += &format!("{person},{frame},{x},{y}\n");
-        }
-    }
-    text
 }
 
 #[test]

@@ -76,8 +76,8 @@ pub fn hall(rng: &mut ChaCha8Rng, most: u32) -> Value {
     }
     if rng.random() {
         let closed = [from, from + 1.5];
-        hall["doors"] = json!([{"name": "door", "line": [[9.15, 8], [9.15, 12]], "closed_secs": [closed]},
-                               {"name": "valve", "line": [[20.1, 0], [20.1, 4]], "one_way": [1, 0]}]);
+        hall["doors"] = json!([{"name": "door", "line": [[20.15, 0], [20.15, 4]], "closed_secs": [closed]},
+                               {"name": "valve", "line": [[9.15, 8], [9.15, 12]], "one_way": [1, 0]}]);
     }
     hall
 }

@@ -132,7 +132,7 @@ impl Measure for Front {
                 "m/s",
                 "standard error of the speed (jackknife)",
             ),
-            ("slowness_s_per_m", "s/m", "1 / speed"),
+            ("slowness_s_per_m", "s/m", "time per meter, 1 / speed"),
             (
                 "slowness_error_s_per_m",
                 "s/m",
