@@ -161,7 +161,7 @@ fn the_first_round_is_at_one_step_if_spreads_are_known() {
     let hope = |prior, tolerance| Hope { prior, tolerance };
     let known = || prior(0.02, &[0.1, -0.1]);
     let one = hope(known(), Tolerance::Relative(0.02));
-    let round = first_round(&[one.clone()], &offers(&[0; 6]), 0.95).unwrap();
+    let round = first_round(std::slice::from_ref(&one), &offers(&[0; 6]), 0.95).unwrap();
     assert_eq!(round.iter().filter(|runs| **runs > 0).count(), 1);
     for other in [
         hope(known(), Tolerance::Absolute(0.02)),
