@@ -20,7 +20,7 @@ pub struct Moment<'a> {
     pub speed: Vec<f64>,
     /// The numbers of their groups; missing: 0.
     pub groups: Vec<u16>,
-    /// How far they have come on their journeys, see [`trip`]; missing without journeys.
+    /// How far they have come on their journeys; missing without journeys.
     pub trips: Vec<[i32; 2]>,
     /// The time series.
     pub series: Vec<Option<f64>>,
