@@ -55,7 +55,7 @@ fn an_interrupted_estimate_goes_on_with_its_runs_to_the_same_tables() {
     use crate::common::program::{PROGRAM, stop_with};
 
     let folder = tempfile::tempdir().unwrap();
-    let wanted = ["--error", "flow_per_s=2.5%", "--threads", "1"];
+    let wanted = ["--error", "flow_per_s=1.7%", "--threads", "1"];
     let whole = [&wanted[..], &["--out", "whole"]].concat();
     let output = run_in(folder.path(), &estimate(&whole));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
