@@ -183,7 +183,7 @@ mod tests {
     #[test]
     fn a_queue_begins_at_its_place_and_ends_at_the_first_gap() {
         let queue = |distances: &[f64], start| length(distances.iter().copied(), start);
-        let all = [0.5, 1.0, 3.9, 6.9, 6.9 + GAP, 6.9 + 2.0 * GAP + 0.1, 20.0];
+        let all = [0.5, 1.0, 4.0, 7.0, 7.0 + GAP, 7.0 + 2.0 * GAP + 0.1, 20.0];
         assert_eq!(queue(&all, 0.0), 5);
         // Nobody stands at the place.
         assert_eq!(queue(&[GAP + 0.1, GAP + 0.2], 0.0), 0);
