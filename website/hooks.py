@@ -14,6 +14,8 @@ ROOT = Path(__file__).resolve().parent.parent
 MADE = ROOT / "target" / "site-parts"
 OUTSIDE = re.compile(r"\]\(((?:\.\./)+)([^)#\s]+)(#[^)]*)?\)")
 ALWAYS = ["CONTRIBUTING.md", "CHANGELOG.md"]
+# Pages for people who work on the program, and lists of names, come after the others in the search.
+INSIDE = re.compile(r"(architecture|performance|scaling|self-measurement|releasing|python-api|rust-api)\.md|tables/|source/")
 
 
 def _target(page: str, up: str, path: str) -> str | None:
@@ -36,6 +38,7 @@ def on_files(files, config):
         for source in sorted((MADE / part).rglob("*")):
             if source.is_file():
                 uri = f"{part}/{source.relative_to(MADE / part).as_posix()}"
+                uri = re.sub(r"\.md$", ".txt", uri)  # the license of a font is no page
                 made = File.generated(config, uri, abs_src_path=str(source))
                 made.inclusion = InclusionLevel.NOT_IN_NAV
                 files.append(made)
@@ -52,6 +55,8 @@ def _links(file):
 
 def on_page_markdown(markdown, page, config, files):
     uri = page.file.src_uri
+    if INSIDE.match(uri):
+        page.meta["search"] = {"boost": 0.3}
     levels = len(PurePosixPath(uri).parents) - 1
     if uri.startswith("source/"):
         # A file of the repository's root links to docs/ as its folder, and to other files beside it.
