@@ -55,15 +55,26 @@ fn an_interrupted_estimate_goes_on_with_its_runs_to_the_same_tables() {
     use crate::common::program::{PROGRAM, stop_with};
 
     let folder = tempfile::tempdir().unwrap();
-    let wanted = ["--error", "flow_per_s=1.7%", "--threads", "1"];
-    let whole = [&wanted[..], &["--out", "whole"]].concat();
-    let output = run_in(folder.path(), &estimate(&whole));
+    // Some seconds of computing, so that the signal arrives in the middle.
+    let command = |out| {
+        let wanted = ["estimate", "evacuation", "--error", "flow_per_s=1.2%"];
+        let larger = [
+            "--set",
+            "grids.0.columns=16",
+            "--set",
+            "grids.0.rows=16",
+            "--set",
+            "measurements.1.flow_of_first.arrivals=150",
+        ];
+        [&wanted[..], &["--threads", "1", "--out", out], &larger].concat()
+    };
+    let output = run_in(folder.path(), &command("whole"));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let expected = tables(&folder.path().join("whole"));
     assert_eq!(expected.len(), 2);
     for signal in ["INT", "KILL"] {
         let out = folder.path().join(signal);
-        let command = estimate(&[&wanted[..], &["--out", signal]].concat());
+        let command = command(signal);
         let child = Command::new(PROGRAM)
             .args(&command)
             .current_dir(folder.path())

@@ -151,11 +151,11 @@ pub fn journeys(journeys: &[JourneyResult]) -> Table {
         .column("journey", |row| shown(&row.name))
         .column("started", |row| row.left.started)
         .column("left", |row| row.left.finished)
-        .fixed("mean s", 1, |row| row.left.mean_secs)
-        .fixed("50 % at s", 1, |row| row.left.t50_secs)
-        .fixed("95 %", 1, |row| row.left.t95_secs)
-        .fixed("all", 1, |row| row.left.t100_secs)
-        .fixed("waited s", 1, |row| row.left.waited_secs)
+        .fixed("mean [s]", 1, |row| row.left.mean_secs)
+        .fixed("50 % [s]", 1, |row| row.left.t50_secs)
+        .fixed("95 % [s]", 1, |row| row.left.t95_secs)
+        .fixed("all [s]", 1, |row| row.left.t100_secs)
+        .fixed("waited [s]", 1, |row| row.left.waited_secs)
         .table()
 }
 
@@ -165,9 +165,11 @@ pub fn places(places: &[PlaceResult]) -> Table {
         .column("place", |row| shown(&row.name))
         .column("kind", |row| row.kind.as_str())
         .column("passed", |row| row.passed)
-        .fixed("share %", 1, |row| row.share.map(|share| 100.0 * share))
-        .fixed("first s", 1, |row| row.from_to_secs.map(|[first, _]| first))
-        .fixed("last s", 1, |row| row.from_to_secs.map(|[_, last]| last))
-        .fixed("waited s", 1, |row| row.waited_secs)
+        .fixed("share [%]", 1, |row| row.share.map(|share| 100.0 * share))
+        .fixed("first [s]", 1, |row| {
+            row.from_to_secs.map(|[first, _]| first)
+        })
+        .fixed("last [s]", 1, |row| row.from_to_secs.map(|[_, last]| last))
+        .fixed("waited [s]", 1, |row| row.waited_secs)
         .table()
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::analysis::round;
 use crate::analysis::statistics::draws_above;
 use crate::scenario::quote::shown;
 
@@ -38,7 +39,7 @@ impl Tolerance {
 impl fmt::Display for Tolerance {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Relative(part) => write!(f, "{} %", 100.0 * part),
+            Self::Relative(part) => write!(f, "{} %", round::text(100.0 * part)),
             Self::Absolute(error) => write!(f, "{error}"),
         }
     }

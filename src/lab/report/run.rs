@@ -4,7 +4,7 @@ use super::{facts, limits, settings};
 use crate::lab::egress::Egress;
 use crate::output::document::{Block, Document};
 use crate::output::plot::Sheet;
-use crate::output::table::Table;
+use crate::output::results;
 use crate::runs::drive::Run;
 use crate::runs::identity::{ENGINE, Identity};
 use crate::runs::summary::{JourneyResult, Summary};
@@ -52,13 +52,8 @@ pub fn of_run(run: &Run, sources: Sources) -> Document {
     blocks.push(Block::heading(
         "Flows, densities, levels of service, exposure",
     ));
-    for measurement in &scenario.measurements {
-        let facts = facts::measured(measurement, &summary);
-        if !facts.is_empty() {
-            let caption = caption(measurement);
-            blocks.push(Block::Table(facts::table(&facts), caption));
-        }
-    }
+    let measurements = scenario.measurements.iter();
+    blocks.extend(measurements.filter_map(|one| measured(one, &summary)));
     blocks.push(Block::text(facts::DENSITY));
     let later: Vec<(f64, Sheet)> = pictures.collect();
     if !later.is_empty() {
@@ -97,27 +92,25 @@ fn about(scenario: &Scenario, summary: &Summary) -> Vec<Block> {
 
 /// The journeys; nothing without any.
 fn journeys(journeys: &[JourneyResult]) -> Option<Block> {
-    let table = Table::of(journeys)
-        .column("journey", |row| row.name.as_str())
-        .column("started", |row| row.left.started)
-        .column("left", |row| row.left.finished)
-        .fixed("mean time [s]", 1, |row| row.left.mean_secs)
-        .fixed("50 % [s]", 1, |row| row.left.t50_secs)
-        .fixed("95 % [s]", 1, |row| row.left.t95_secs)
-        .fixed("all [s]", 1, |row| row.left.t100_secs)
-        .fixed("waited [s]", 1, |row| row.left.waited_secs)
-        .table();
-    let caption = "Mean time: from entry to exit. 50 %, 95 % and all: when these parts of those who started had left. \
+    let caption = "Mean: from entry to exit. 50 %, 95 % and all: when these parts of those who started had left. \
                    Waited: the mean time in queues and waiting areas of those who have left.";
-    (!journeys.is_empty()).then(|| Block::Table(table, caption.to_owned()))
+    let table = || Block::Table(results::journeys(journeys), caption.to_owned());
+    (!journeys.is_empty()).then(table)
 }
 
-/// What a reader must know beside the definitions.
-fn caption(measurement: &Measurement) -> String {
-    match measurement.about().has_thresholds {
-        true => "Thresholds are from the literature, not safety limits.".to_owned(),
-        false => String::new(),
+/// The values of a measurement with their definitions, and where it observes people; nothing without values.
+fn measured(measurement: &Measurement, summary: &Summary) -> Option<Block> {
+    let facts = facts::measured(measurement, summary);
+    let places = measurement.observed();
+    let mut about: Vec<String> = places
+        .iter()
+        .map(|(_, place)| format!("Where: {place}."))
+        .collect();
+    if measurement.about().has_thresholds {
+        about.push("Thresholds are from the literature, not safety limits.".to_owned());
     }
+    let table = || Block::Table(facts::table(&facts), about.join(" "));
+    (!facts.is_empty()).then(table)
 }
 
 /// Digests, and how to run it again.

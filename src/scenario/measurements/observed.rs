@@ -1,5 +1,7 @@
 //! Where measurements are taken, as pictures and recordings show it.
 
+use std::fmt;
+
 use super::Measurement;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
@@ -41,6 +43,20 @@ impl Observed {
                 corners.into_iter().chain([corners[0]]).collect()
             }
         }
+    }
+}
+
+impl fmt::Display for Observed {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let (kind, [from, to]) = match *self {
+            Self::Region(Region { min, max }) => ("the rectangle", [min, max]),
+            Self::Line(ends) => ("the line", ends),
+        };
+        write!(
+            f,
+            "{kind} from ({}, {}) to ({}, {}) m",
+            from.x, from.y, to.x, to.y
+        )
     }
 }
 
