@@ -59,14 +59,29 @@ fn ratios_have_the_stated_baseline() {
         .iter()
         .map(|row| row["agents"].as_u64().unwrap())
         .collect();
-    assert_eq!(agents, [1_000, 3_000, 10_000]);
+    // The crowd at rest, and five crowds that walk.
+    assert_eq!(agents[..3], [1_000, 3_000, 10_000]);
+    assert_eq!(agents[3..], [10_000; 5]);
     let median = |row: &Value| row["ns_per_agent_frame"]["median"].as_f64().unwrap();
-    for row in &scaling {
+    for (k, row) in scaling.iter().enumerate() {
         let per_frame = row["ms_per_frame"]["median"].as_f64().unwrap();
         let per_agent = 1e6 * per_frame / row["agents"].as_f64().unwrap();
         assert!((per_agent / median(row) - 1.0).abs() < 1e-12);
-        let ratio = median(row) / median(&scaling[2]);
+        let ratio = median(row) / median(&scaling[k.max(2)]);
         assert_eq!(row["ratio_to_10000"].as_f64().unwrap(), ratio);
+        if k >= 2 {
+            let ratio = median(row) / median(&scaling[2]);
+            assert_eq!(row["ratio_to_rest"].as_f64().unwrap(), ratio);
+        }
+        let step = if row["crowd"].as_str().unwrap().contains("fast") {
+            50.0
+        } else {
+            20.0
+        };
+        let factor = row["real_time_factor"].as_f64().unwrap();
+        assert!((factor * per_frame / step - 1.0).abs() < 1e-12);
+        let share = row["sorts_and_lists"].as_f64().unwrap();
+        assert!((0.0..1.0).contains(&share));
     }
     let threads = rows(&measure("threads", &quick()));
     assert_eq!(threads[0]["threads"], 1);
@@ -96,6 +111,7 @@ fn without_a_measured_baseline_there_is_no_ratio() {
     };
     let rows = rows(&measure("scaling", &plan));
     assert_eq!(rows.len(), 2);
+    assert_eq!(rows[1]["ratio_to_rest"], 1.0);
     assert!(rows.iter().all(|row| row["ratio_to_10000"].is_null()));
 }
 
@@ -227,6 +243,8 @@ fn streams_go_both_ways() {
     let scene = Crowd::streams(100, "sf").scene().unwrap();
     let to_the_right = scene.agents.iter().filter(|a| a.goal.x > a.position.x);
     assert_eq!(to_the_right.count(), 50);
+    let scene = Crowd::walkers(100, 2.0, "sph").scene().unwrap();
+    assert!(scene.agents.iter().all(|a| a.goal.x > a.position.x));
 }
 
 #[test]

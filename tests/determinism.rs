@@ -1,7 +1,9 @@
 //! Results are bit-identical with any number of threads, and with or without observers.
 
 use crate::common;
-use crate::common::{bits, blend, block, room, scene, vector};
+use crate::common::{bits, blend, block, polygon, room, scene, vector};
+use sandbox::engine::clock::Clock;
+use sandbox::engine::neighbors::{ListPolicy, MANY, SKIN};
 use sandbox::engine::pairs::Precision;
 use sandbox::engine::profile::Override;
 use sandbox::engine::scene::{Goal, Push, Region, Scene, Source};
@@ -82,6 +84,70 @@ fn assert_same_bits(profile: &str, precision: Precision) {
         assert!(bits(&one) == bits(&many), "{profile} on {threads} threads");
         assert_eq!(one.outcome(), many.outcome());
         assert_eq!(one.events(), many.events());
+    }
+}
+
+/// A crowd whose lists follow it: it walks along a wall, faster on its left side.
+fn large_crowd() -> Scene {
+    let wall = polygon(&[[-5.0, -2.0], [200.0, -2.0], [200.0, -1.0], [-5.0, -1.0]]);
+    let mut scene = scene(vec![wall], blend("sph"));
+    scene.clock = Clock::new(0.02, 1);
+    scene.agents = block(
+        vector(0.0, 0.0),
+        200,
+        MANY as u32 / 200 + 1,
+        0.45,
+        vector(0.0, 0.0),
+    );
+    for agent in &mut scene.agents {
+        agent.goal = agent.position + vector(100.0, 3.0);
+        agent.preferred_speed = Some(1.2 + 0.003 * agent.position.y);
+    }
+    scene
+}
+
+#[test]
+fn lists_that_follow_a_large_crowd_change_only_the_rounding() {
+    let frames = 60;
+    let one = simulated(large_crowd(), 1, frames);
+    // All have walked much farther than half the margin, but lists were made a few times only.
+    let mut watched = Simulation::new(large_crowd()).unwrap();
+    let mut sorts = 0;
+    for _ in 0..frames {
+        watched.evaluate().unwrap();
+        let frame = watched.frame();
+        sorts += u32::from(frame.neighbors.sorted_at() == frame.agents.position);
+        watched.integrate().unwrap();
+    }
+    let walked = one.frame().agents.velocity.iter().map(|v| v.norm());
+    let way = walked.fold(0.0, f64::max) * 0.02 * f64::from(frames);
+    // Without following: a sort for each half of the margin that somebody walks.
+    let others = (way / (0.5 * SKIN)) as u32;
+    assert!(
+        2 <= sorts && sorts < 2 * others / 3,
+        "{sorts} sorts instead of {others}"
+    );
+    assert!(bits(&one) == bits(&simulated(large_crowd(), 3, frames)));
+    let mut begun = simulated(large_crowd(), 2, frames / 2);
+    begun = Simulation::resumed(large_crowd(), begun.state()).unwrap();
+    common::run(&mut begun, u64::from(frames / 2));
+    assert!(bits(&one) == bits(&begun));
+    // Lists made in every frame, without a margin.
+    let mut anew = large_crowd();
+    anew.neighbor_lists = ListPolicy::Coarse;
+    let anew = simulated(anew, 2, frames);
+    let places = |of: &Simulation| {
+        let agents = of.frame().agents;
+        let places = agents
+            .id
+            .iter()
+            .copied()
+            .zip(agents.position.iter().copied());
+        places.collect::<std::collections::BTreeMap<_, _>>()
+    };
+    let (one, anew) = (places(&one), places(&anew));
+    for (id, place) in one {
+        assert!((place - anew[&id]).norm() < 1e-9, "agent {id}");
     }
 }
 

@@ -4,7 +4,9 @@ use crate::common::vector;
 use rand::Rng;
 use sandbox::engine::agents::{Agents, NewAgent};
 use sandbox::engine::math::Vector;
-use sandbox::engine::neighbors::{BLOCK, CLUSTER, Grid, Neighbors, Ranges, Run, SKIN};
+use sandbox::engine::neighbors::{
+    BLOCK, CLUSTER, FOLLOWED, Grid, Neighbors, Ranges, Run, SKIN, STRIP, Shifts,
+};
 use sandbox::engine::random::{Purpose, stream};
 
 fn crowd(count: u32, side: f64) -> Agents {
@@ -27,6 +29,7 @@ fn listed(agents: &mut Agents) -> Neighbors {
         longest_step: 0.036,
         drift: 0.5 * SKIN,
         margin: 0.5 * SKIN,
+        follow: false,
         period: None,
     };
     neighbors.sort(agents, ranges);
@@ -90,7 +93,7 @@ fn no_neighbor_is_missed_until_the_lists_are_stale() {
             let angle = i as f64;
             *r += vector(angle.cos(), angle.sin()) * 0.05;
         }
-        neighbors.travelled(0.05 * f64::from(step));
+        neighbors.moved(0.05 * f64::from(step), Vec::new());
         for i in 0..agents.len() {
             let r_i = agents.position[i];
             let around: Vec<usize> = neighbors
@@ -111,7 +114,7 @@ fn no_neighbor_is_missed_until_the_lists_are_stale() {
         // Lists rebuilt on the old cells are valid as long as before.
         neighbors.list_agents();
     }
-    neighbors.travelled(0.1 + 1e-6);
+    neighbors.moved(0.1 + 1e-6, Vec::new());
     assert!(neighbors.are_stale());
 }
 
@@ -183,4 +186,99 @@ fn strange_sizes_and_extents_make_small_grids() {
             assert!(grid.cells() <= 1024);
         }
     }
+}
+
+/// Moves agents to where `place` maps their places at the sort.
+fn move_to(neighbors: &mut Neighbors, agents: &mut Agents, place: impl Fn(Vector) -> Vector) {
+    let sorted_at = neighbors.sorted_at().to_vec();
+    agents.position = sorted_at.iter().map(|&p| place(p)).collect();
+    let ways = agents.position.iter().zip(&sorted_at);
+    let farthest = ways.map(|(p, q)| (p - q).norm()).fold(0.0, f64::max);
+    let mut strips = neighbors.take_strips();
+    let some = agents.position.chunks(STRIP).zip(sorted_at.chunks(STRIP));
+    for (strip, (positions, starts)) in strips.iter_mut().zip(some) {
+        *strip = Shifts::of(positions, starts);
+    }
+    neighbors.moved(farthest, strips);
+}
+
+#[test]
+fn lists_that_follow_a_crowd_miss_nobody_however_it_moves() {
+    let mut rng = stream(3, Purpose::Placement, 0, 0);
+    let (mut kept, mut late) = (0, 0);
+    for round in 0..300 {
+        // A full square, or two halves with a gap between them, or few agents far apart.
+        let (count, side) = [(1500, 20.0), (600, 12.0), (300, 60.0)][round % 3];
+        let gap: f64 = [0.0, 2.5, 4.0][round / 3 % 3];
+        let mut agents = crowd(count, side);
+        for p in &mut agents.position {
+            p.x += if p.x > 0.5 * side { gap } else { 0.0 };
+        }
+        let mut neighbors = Neighbors::default();
+        let ranges = Ranges {
+            support: 1.0,
+            longest_step: 0.036,
+            drift: FOLLOWED,
+            margin: 0.5 * SKIN,
+            follow: true,
+            ..Ranges::default()
+        };
+        neighbors.sort(&mut agents, ranges);
+        neighbors.list_agents();
+        let mut random = |most: f64| rng.random_range(-most..=most);
+        let (drift, shear) = (vector(random(0.6), random(0.6)), random(0.006));
+        let toward = random(if gap > 3.0 { 0.5 } else { 0.04 });
+        let noise = random(0.03);
+        move_to(&mut neighbors, &mut agents, |p| {
+            let side = if p.x > 0.5 * side { -toward } else { toward };
+            let wave = noise * (7.0 * p.x).sin();
+            p + drift + vector(shear * p.y + side + wave, -wave)
+        });
+        if neighbors.are_stale() {
+            continue;
+        }
+        kept += 1;
+        let at = neighbors.sorted_at();
+        let moved = agents.position.iter().zip(at).map(|(p, q)| (p - q).norm());
+        late += usize::from(moved.fold(0.0, f64::max) > 0.5 * SKIN);
+        for i in 0..agents.len() {
+            let found = near(&neighbors, i);
+            for j in 0..agents.len() {
+                let distance = (agents.position[i] - agents.position[j]).norm();
+                assert!(
+                    distance >= 1.0 || found.contains(&j),
+                    "round {round}: {i} {j}"
+                );
+            }
+        }
+    }
+    assert!(kept > 30 && late > 20, "{kept} {late}: nothing was tested");
+}
+
+#[test]
+fn lists_follow_a_crowd_that_moves_as_one_and_no_pair_that_parts() {
+    let mut agents = crowd(2000, 20.0);
+    let mut neighbors = Neighbors::default();
+    let ranges = Ranges {
+        support: 1.0,
+        drift: FOLLOWED,
+        margin: 0.5 * SKIN,
+        follow: true,
+        ..Ranges::default()
+    };
+    neighbors.sort(&mut agents, ranges);
+    move_to(&mut neighbors, &mut agents, |p| {
+        p + vector(0.9 * FOLLOWED, 0.0)
+    });
+    assert!(!neighbors.are_stale());
+    move_to(&mut neighbors, &mut agents, |p| {
+        p + vector(1.1 * FOLLOWED, 0.0)
+    });
+    assert!(neighbors.are_stale());
+    // One half walks along the other.
+    let along = |shift: f64| move |p: Vector| p + vector(if p.y > 10.0 { shift } else { 0.0 }, 0.0);
+    move_to(&mut neighbors, &mut agents, along(0.9 * SKIN));
+    assert!(!neighbors.are_stale());
+    move_to(&mut neighbors, &mut agents, along(1.1 * SKIN));
+    assert!(neighbors.are_stale());
 }

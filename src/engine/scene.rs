@@ -15,7 +15,7 @@ use crate::engine::forces::walking::WalkingLaw;
 use crate::engine::geometry::{Polygon, Walls};
 use crate::engine::journeys::Journeys;
 use crate::engine::math::Vector;
-use crate::engine::neighbors::{ListPolicy, Ranges, SKIN};
+use crate::engine::neighbors::{FOLLOWED, ListPolicy, MANY, Ranges, SKIN};
 use crate::engine::pairs::Precision;
 use crate::engine::period::Period;
 use crate::engine::placement::Grid;
@@ -347,7 +347,13 @@ impl Scene {
             Integrator::Midpoint => 0.5 * longest_step, // forces are also evaluated half a step ahead
             _ => 0.0,
         };
+        let reads_lists_alone = !(needs.social || needs.walking || needs.avoidance.is_some());
+        let follow = self.neighbor_lists == ListPolicy::Complete
+            && agents.len() >= MANY
+            && reads_lists_alone
+            && self.period.is_none();
         let (drift, margin) = match self.neighbor_lists {
+            ListPolicy::Complete if follow => (FOLLOWED + ahead, 0.5 * SKIN + ahead),
             ListPolicy::Complete => (0.5 * SKIN + ahead, 0.5 * SKIN + ahead),
             ListPolicy::Coarse => {
                 let frames = f64::from(self.clock.coarse_every());
@@ -369,6 +375,7 @@ impl Scene {
             longest_step,
             drift,
             margin,
+            follow,
             period: self.period,
         }
     }

@@ -138,10 +138,26 @@ impl Grid {
         self.height
     }
 
-    fn cell_of(&self, p: Vector) -> usize {
+    /// The numbers of columns and rows.
+    pub fn size(&self) -> [usize; 2] {
+        [self.columns, self.rows]
+    }
+
+    /// The fewest columns and rows that are at least `meters` wide and high.
+    pub fn cells_within(&self, meters: f64) -> [usize; 2] {
+        [self.width, self.height].map(|side| ((meters / side).ceil() as usize).max(1))
+    }
+
+    /// The column and the row of `p`, one of the positions over which the grid was laid.
+    pub fn column_and_row(&self, p: Vector) -> [usize; 2] {
         let offset = p - self.origin;
         let column = ((offset.x / self.width) as usize).min(self.columns - 1);
         let row = ((offset.y / self.height) as usize).min(self.rows - 2);
+        [column, row]
+    }
+
+    fn cell_of(&self, p: Vector) -> usize {
+        let [column, row] = self.column_and_row(p);
         row * self.columns + column
     }
 

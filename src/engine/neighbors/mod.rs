@@ -2,18 +2,21 @@
 //!
 //! Agents are sorted into the cells of a [`Grid`]. Near neighbors (for SPH and contact) are listed as runs of
 //! agents in memory, for [`Clusters`] of agents that are close together. The lists have a margin, the *skin*:
-//! until an agent has moved by half of it since the sort, they miss no neighbor. Neighbors in the wide circle of
-//! the avoidance methods are read from the grid's rows, without lists.
+//! until an agent has moved by half of it since the sort, they miss no neighbor; in a large crowd, until agents that are
+//! near each other have moved by it against each other ([`Shifts`]). Neighbors in the wide circle of the avoidance
+//! methods are read from the grid's rows, without lists.
 
 mod clusters;
 mod grid;
 mod lists;
 mod run;
+mod shifts;
 
 pub use clusters::{BLOCK, CLUSTER, ClusterBlock, Clusters, TASK};
 pub use grid::{Grid, Place};
 pub use lists::Lists;
 pub use run::Run;
+pub use shifts::{STRIP, Shifts};
 
 use std::ops::Range;
 
@@ -23,10 +26,19 @@ use crate::engine::agents::Agents;
 use crate::engine::geometry::Walls;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::period::Period;
+use shifts::Tiles;
 
 /// Margin of all lists, meters: when an agent has moved by half of it since the sort, all lists are rebuilt. With a
 /// larger margin, lists are rebuilt less often but are longer.
 pub const SKIN: f64 = 0.14;
+
+/// From this number of agents on, lists follow a crowd that moves as one. Sorts of smaller crowds cost little: their
+/// agents are in fast memory.
+pub const MANY: usize = 30_000;
+
+/// The distance that any agent may move before the next sort if lists follow the crowd, meters. With a longer one, sorts
+/// are fewer, and more walls are listed.
+pub const FOLLOWED: f64 = 1.0;
 
 /// When the lists of near agents are rebuilt, and whether they can miss neighbors in between.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -57,6 +69,9 @@ pub struct Ranges {
     pub drift: f64,
     /// The distance that any agent may move between sorts without missing a neighbor, meters; at most `drift`.
     pub margin: f64,
+    /// Whether lists are valid until agents that are near each other have moved by the [`SKIN`] against each other, not
+    /// only until one has moved by half of it. For sums that read the lists alone.
+    pub follow: bool,
     /// Agents are also neighbors across the ends of this period, in which all of them are at the sort.
     pub period: Option<Period>,
 }
@@ -83,6 +98,11 @@ pub struct Neighbors {
     sorted_at: Vec<Vector>,
     /// The greatest distance of any agent from its position at the last sort, meters.
     travelled: f64,
+    /// The shifts of each [`STRIP`] of agents, if lists follow the crowd.
+    strips: Vec<Shifts>,
+    tiles: Tiles,
+    /// Whether agents that may meet have moved against each other by more than the [`SKIN`].
+    are_torn: bool,
 }
 
 impl Neighbors {
@@ -90,12 +110,15 @@ impl Neighbors {
     pub fn sort(&mut self, agents: &mut Agents, ranges: Ranges) {
         self.ranges = ranges;
         self.travelled = 0.0;
+        self.are_torn = false;
         self.near.clear();
         self.reach = near_radius(agents, &ranges);
         let period = ranges.period;
         let order = self.grid.rebuild(&agents.position, self.reach, period);
         agents.arrange(&order);
         self.sorted_at.clone_from(&agents.position);
+        let strips = agents.len().div_ceil(STRIP);
+        self.strips.resize(strips, Shifts::default());
     }
 
     /// Lists the near neighbors of all agents, as far as SPH and contact reach.
@@ -126,14 +149,33 @@ impl Neighbors {
         &self.sorted_at
     }
 
-    /// Sets the greatest distance, in meters, of any agent from its position at the last sort.
-    pub fn travelled(&mut self, farthest: f64) {
-        self.travelled = farthest;
+    /// Whether lists follow the crowd: then [`moved`](Self::moved) needs the shifts of all agents.
+    pub fn follow(&self) -> bool {
+        self.ranges.follow
     }
 
-    /// Whether an agent has moved so far since the sort that lists with the [`SKIN`] could miss a neighbor.
+    /// The memory for the shifts of each [`STRIP`] of agents.
+    pub fn take_strips(&mut self) -> Vec<Shifts> {
+        std::mem::take(&mut self.strips)
+    }
+
+    /// Takes the greatest distance, in meters, of any agent from its position at the last sort, and the shifts of each
+    /// [`STRIP`] of agents, which count if lists follow the crowd.
+    pub fn moved(&mut self, farthest: f64, strips: Vec<Shifts>) {
+        (self.travelled, self.strips) = (farthest, strips);
+        if self.ranges.follow && farthest > 0.5 * SKIN {
+            let size = self.reach + 2.0 * FOLLOWED;
+            let sorted = (&self.grid, &self.sorted_at[..]);
+            self.are_torn = self.tiles.differ(sorted, &self.strips, size, SKIN);
+        }
+    }
+
+    /// Whether agents have moved so far since the sort that lists with the [`SKIN`] could miss a neighbor.
     pub fn are_stale(&self) -> bool {
-        self.travelled > 0.5 * SKIN
+        match self.ranges.follow {
+            true => self.are_torn || self.travelled > FOLLOWED,
+            false => self.travelled > 0.5 * SKIN,
+        }
     }
 
     /// The period across whose ends agents are neighbors.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::{Arrival, Crowd, Fault, Simulation, Stage};
 use crate::engine::geometry::Walls;
 use crate::engine::math::{Vector, clamp_length, greatest, is_finite};
-use crate::engine::neighbors::{BLOCK, TASK};
+use crate::engine::neighbors::{BLOCK, STRIP, Shifts, TASK};
 use crate::engine::pairs::{Level, dispatch};
 use crate::engine::scene::{Integrator, Scene};
 
@@ -141,16 +141,19 @@ impl Simulation {
     ) -> Moves {
         let (scene, agents) = (&self.fixed.scene, &mut self.crowd.agents);
         let (walls, max_speeds) = (&scene.walls, &agents.max_speed);
+        let mut strips = self.derived.neighbors.take_strips();
         let neighbors = &self.derived.neighbors;
         let blocks = (
             agents.position.par_chunks_mut(BLOCK),
             agents.velocity.par_chunks_mut(BLOCK),
             self.derived.fields.acceleration.par_chunks(BLOCK),
             neighbors.sorted_at().par_chunks(BLOCK),
+            strips.par_chunks_mut(BLOCK / STRIP),
         );
         let moves = self.stages.time(Stage::Integration, || {
             let blocks = blocks.into_par_iter().with_min_len(TASK).enumerate();
-            let moved = blocks.map(|(b, (positions, velocities, accelerations, sorted_at))| {
+            let moved = blocks.map(|(b, block)| {
+                let (positions, velocities, accelerations, sorted_at, strips) = block;
                 let from = b * BLOCK;
                 let walled = neighbors.agents_near_walls(from..from + positions.len());
                 let mut walled = walled.peekable();
@@ -178,12 +181,17 @@ impl Simulation {
                         moves.make(&limits, dt, *motion, position, velocity);
                     }
                 }
-                moves.farthest = dispatch!(Level::new(), _simd => farthest(positions, sorted_at));
+                moves.farthest = dispatch!(Level::new(), _simd => {
+                    if neighbors.follow() {
+                        shift(positions, sorted_at, strips);
+                    }
+                    farthest(positions, sorted_at)
+                });
                 moves
             });
             moved.reduce(Moves::default, Moves::and)
         });
-        self.derived.neighbors.travelled(moves.farthest.sqrt());
+        self.derived.neighbors.moved(moves.farthest.sqrt(), strips);
         moves
     }
 
@@ -318,6 +326,15 @@ fn farthest(positions: &[Vector], before: &[Vector]) -> f64 {
         *way = (position - start).norm_squared();
     }
     greatest(&ways, |&way| way)
+}
+
+/// Finds the shifts of the agents of a block since the sort, strip by strip.
+#[inline(always)]
+pub(super) fn shift(positions: &[Vector], sorted_at: &[Vector], strips: &mut [Shifts]) {
+    let agents = positions.chunks(STRIP).zip(sorted_at.chunks(STRIP));
+    for (strip, (positions, sorted_at)) in strips.iter_mut().zip(agents) {
+        *strip = Shifts::of(positions, sorted_at);
+    }
 }
 
 /// The limits of a move.

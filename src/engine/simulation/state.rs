@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::integrate::shift;
 use super::schedule::Schedule;
 use super::trips;
 use super::{Outcome, Progress, Simulation};
@@ -97,7 +98,9 @@ impl Simulation {
         let ways = agents.position.iter().zip(neighbors.sorted_at());
         let squares = ways.map(|(now, then)| (now - then).norm_squared());
         let farthest = squares.fold(0.0, f64::max);
-        neighbors.travelled(farthest.sqrt());
+        let mut strips = neighbors.take_strips();
+        shift(&agents.position, neighbors.sorted_at(), &mut strips);
+        neighbors.moved(farthest.sqrt(), strips);
         Ok(())
     }
 }

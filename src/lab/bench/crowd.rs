@@ -9,10 +9,21 @@ use crate::engine::simulation::Simulation;
 use crate::lab::error::LabError;
 use crate::scenario::catalog::{self, Parameters};
 
-/// Distance to the goals of streams, meters: no agent arrives.
+/// Distance to the goals of agents that walk, meters: no agent arrives.
 const AHEAD: f64 = 100.0;
 /// Each coordinate is moved by up to ± this fraction of the distance between neighbors.
 const JITTER: f64 = 0.05;
+
+/// Where the agents of a crowd want to go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// Nowhere: their goals are their own positions.
+    Stay,
+    /// To the right.
+    Right,
+    /// Alternately to the right and to the left.
+    Both,
+}
 
 /// A square block of agents on a hexagonal grid with jitter.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,9 +36,8 @@ pub struct Crowd {
     pub profile: &'static str,
     /// Changes to the profile's parameters.
     pub parameters: Parameters,
-    /// Whether the agents walk, alternately to the right and to the left. Otherwise their goals are their own
-    /// positions.
-    pub streams: bool,
+    /// Where they want to go.
+    pub way: Way,
 }
 
 impl Crowd {
@@ -44,7 +54,7 @@ impl Crowd {
                 goal_scale: Some(0.1),
                 ..Parameters::default()
             },
-            streams: false,
+            way: Way::Stay,
         }
     }
 
@@ -55,7 +65,18 @@ impl Crowd {
             density: 4.0,
             profile,
             parameters: Parameters::default(),
-            streams: true,
+            way: Way::Both,
+        }
+    }
+
+    /// Agents that all walk to the right, at 1.3 m/s when they are alone.
+    pub fn walkers(agents: u32, density: f64, profile: &'static str) -> Self {
+        Self {
+            agents,
+            density,
+            profile,
+            parameters: Parameters::default(),
+            way: Way::Right,
         }
     }
 
@@ -71,9 +92,12 @@ impl Crowd {
             counted: false,
             ..Group::new("crowd", blend)
         });
-        let ahead = if self.streams { AHEAD } else { 0.0 };
         let agent = |(k, place): (usize, Vector)| {
-            let way = if k.is_multiple_of(2) { ahead } else { -ahead };
+            let way = match self.way {
+                Way::Stay => 0.0,
+                Way::Both if !k.is_multiple_of(2) => -AHEAD,
+                Way::Right | Way::Both => AHEAD,
+            };
             NewAgent::at(place, place + Vector::new(way, 0.0), group)
         };
         let places = self.places(scene.seed).into_iter().enumerate();
