@@ -3,6 +3,7 @@
 use crate::common::vector;
 use rand::Rng;
 use sandbox::engine::agents::{Agents, NewAgent};
+use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::math::Vector;
 use sandbox::engine::neighbors::{
     BLOCK, CLUSTER, FOLLOWED, Grid, Neighbors, Ranges, Run, SKIN, STRIP, Shifts,
@@ -179,10 +180,9 @@ fn strange_sizes_and_extents_make_small_grids() {
             vec![Vector::new(f64::NAN, 0.0); 3],
         ] {
             let mut grid = Grid::default();
-            assert_eq!(
-                grid.rebuild(&positions, height, None).len(),
-                positions.len()
-            );
+            let mut order = Vec::new();
+            grid.rebuild(&positions, height, None, &mut order);
+            assert_eq!(order.len(), positions.len());
             assert!(grid.cells() <= 1024);
         }
     }
@@ -281,4 +281,42 @@ fn lists_follow_a_crowd_that_moves_as_one_and_no_pair_that_parts() {
     assert!(!neighbors.are_stale());
     move_to(&mut neighbors, &mut agents, along(1.1 * SKIN));
     assert!(neighbors.are_stale());
+}
+
+#[test]
+fn lists_of_walls_have_those_in_reach_in_order_and_no_others() {
+    for (squares, spacing) in [(0, 1.0), (2, 6.0), (60, 2.0), (150, 1.3)] {
+        // Turned squares, row by row.
+        let corner = |k: usize, q: usize| {
+            let center = vector((k % 10) as f64, (k / 10) as f64) * spacing;
+            let angle = k as f64 + 0.5 * std::f64::consts::PI * q as f64;
+            center + vector(angle.cos(), angle.sin()) * 0.3
+        };
+        let square = |k: usize| Polygon::new((0..4).map(|q| corner(k, q)).collect()).unwrap();
+        let walls = Walls::new((0..squares).map(square).collect());
+        for count in [5, 400] {
+            let mut agents = crowd(count, 30.0);
+            for p in &mut agents.position {
+                *p -= vector(6.0, 6.0); // some are far outside
+            }
+            let mut neighbors = Neighbors::default();
+            let ranges = Ranges {
+                support: 1.0,
+                avoidance: Some(5.0),
+                drift: 0.07,
+                ..Ranges::default()
+            };
+            neighbors.sort(&mut agents, ranges);
+            neighbors.list_walls(&agents, &walls);
+            for (i, &p) in agents.position.iter().enumerate() {
+                let within = |reach: f64| -> Vec<u32> {
+                    let all = 0..walls.len() as u32;
+                    let distance = |&k: &u32| (walls.wall(k).nearest_point(p).point - p).norm();
+                    all.filter(|k| distance(k) < reach).collect()
+                };
+                assert_eq!(neighbors.near_walls(i), within(1.07));
+                assert_eq!(neighbors.far_walls(i), within(5.07));
+            }
+        }
+    }
 }

@@ -205,13 +205,7 @@ fn agents_far_from_walls_have_empty_lists_of_walls() {
     let frame = simulation.frame();
     assert!((0..25).all(|i| frame.neighbors.near_walls(i).is_empty()));
     assert!((0..25).all(|i| frame.neighbors.far_walls(i).is_empty()));
-    assert!(
-        frame
-            .fields
-            .density_from_walls
-            .iter()
-            .all(|&density| density == 0.0)
-    );
+    assert!((0..25).all(|i| frame.fields.density_from_walls[i] == 0.0));
 }
 
 #[test]

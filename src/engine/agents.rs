@@ -1,8 +1,14 @@
 //! The state of the crowd: one array per quantity, sorted by cell of the neighbor grid.
 
+mod columns;
+
+pub use columns::Spare;
+
 use rand::Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+
+use columns::Column;
 
 use crate::engine::journeys::Trip;
 use crate::engine::math::Vector;
@@ -137,37 +143,52 @@ impl Agents {
 
     /// The arrays with an entry for every agent.
     fn always(&mut self) -> [&mut dyn Column; 10] {
-        [
-            &mut self.id,
-            &mut self.position,
-            &mut self.velocity,
-            &mut self.goal,
-            &mut self.radius,
-            &mut self.mass,
-            &mut self.mean_density,
-            &mut self.newcomer,
-            &mut self.group,
-            &mut self.push,
-        ]
+        self.parts().0
     }
 
     /// The arrays that may be empty, or lack agents that entered since.
     fn sometimes(&mut self) -> [&mut dyn Column; 13] {
-        [
-            &mut self.avoidance,
-            &mut self.allowed_speed,
-            &mut self.heading,
-            &mut self.acceleration_before,
-            &mut self.route,
-            &mut self.aim,
-            &mut self.plan,
-            &mut self.trip,
-            &mut self.zone,
-            &mut self.laps,
-            &mut self.preferred_speed,
-            &mut self.max_speed,
-            &mut self.walks_from,
-        ]
+        self.parts().1
+    }
+
+    /// The arrays that are not empty.
+    fn columns(&mut self) -> impl Iterator<Item = &mut dyn Column> {
+        let (always, sometimes) = self.parts();
+        let all = always.into_iter().chain(sometimes);
+        all.filter(|column| column.count() > 0)
+    }
+
+    /// The arrays with an entry for every agent, and the others.
+    fn parts(&mut self) -> ([&mut dyn Column; 10], [&mut dyn Column; 13]) {
+        (
+            [
+                &mut self.id,
+                &mut self.position,
+                &mut self.velocity,
+                &mut self.goal,
+                &mut self.radius,
+                &mut self.mass,
+                &mut self.mean_density,
+                &mut self.newcomer,
+                &mut self.group,
+                &mut self.push,
+            ],
+            [
+                &mut self.avoidance,
+                &mut self.allowed_speed,
+                &mut self.heading,
+                &mut self.acceleration_before,
+                &mut self.route,
+                &mut self.aim,
+                &mut self.plan,
+                &mut self.trip,
+                &mut self.zone,
+                &mut self.laps,
+                &mut self.preferred_speed,
+                &mut self.max_speed,
+                &mut self.walks_from,
+            ],
+        )
     }
 
     /// Whether the lengths of all arrays fit together.
@@ -320,17 +341,19 @@ impl Agents {
 
     /// Moves agent `order[k]` to index k. Agents that are not in `order` are removed.
     pub fn arrange(&mut self, order: &[u32]) {
+        self.arrange_with(order, &mut Spare::default());
+    }
+
+    /// As [`arrange`](Self::arrange), with memory that is used again.
+    pub fn arrange_with(&mut self, order: &[u32], spare: &mut Spare) {
         let count = self.len();
         self.lacks_routes |= !self.route.is_empty() && self.route.len() < count;
         for column in self.sometimes() {
             if column.count() > 0 {
                 column.extend_to(count);
-                column.arrange(order);
             }
         }
-        for column in self.always() {
-            column.arrange(order);
-        }
+        columns::arrange(self.columns(), order, spare);
     }
 }
 
@@ -354,34 +377,5 @@ fn set_last(values: &mut Vec<f64>, count: usize, value: f64, usual: f64) {
     }
 }
 
-/// Least number of values per parallel task.
-const SOME: usize = 4096;
 /// Least number of agents that look for their ways per parallel task.
 const FEW: usize = 1024;
-
-/// An array with one entry per agent.
-trait Column {
-    /// The number of its entries.
-    fn count(&self) -> usize;
-
-    /// Adds default entries up to this number.
-    fn extend_to(&mut self, count: usize);
-
-    /// Moves entry `order[k]` to index k.
-    fn arrange(&mut self, order: &[u32]);
-}
-
-impl<T: Copy + Default + Send + Sync> Column for Vec<T> {
-    fn count(&self) -> usize {
-        self.len()
-    }
-
-    fn extend_to(&mut self, count: usize) {
-        self.resize(count, T::default());
-    }
-
-    fn arrange(&mut self, order: &[u32]) {
-        let arranged = order.par_iter().with_min_len(SOME);
-        *self = arranged.map(|&i| self[i as usize]).collect();
-    }
-}

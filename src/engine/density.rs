@@ -218,11 +218,11 @@ impl<'a, P: Fn(u16) -> &'a SphParameters + Sync> Input<'a, P> {
         let bodies = &columns.bodies;
         let blocks = (
             fields.density.par_chunks_mut(BLOCK),
-            fields.density_from_walls.par_chunks_mut(BLOCK),
+            fields.density_from_walls.blocks_mut().par_iter_mut(),
             fields.mean_density.par_chunks_mut(BLOCK),
             fields.rest_density.par_chunks_mut(BLOCK),
             fields.pressure.par_chunks_mut(BLOCK),
-            fields.wall_gradient.par_chunks_mut(BLOCK),
+            fields.wall_gradient.blocks_mut().par_iter_mut(),
             columns.volume.par_chunks_mut(BLOCK),
             columns.pressure.par_chunks_mut(BLOCK),
         );
@@ -235,6 +235,11 @@ impl<'a, P: Fn(u16) -> &'a SphParameters + Sync> Input<'a, P> {
                 let agents = b * BLOCK..b * BLOCK + density.len();
                 from_agents(bodies, self.neighbors.near().block(b), density);
                 self.see_walls(agents.clone(), from_walls, gradient);
+                let mut nothing = [0.0; BLOCK];
+                let from_walls = match from_walls.is_empty() {
+                    true => &mut nothing[..],
+                    false => &mut from_walls[..],
+                };
                 let group = &self.agents.group[agents.clone()];
                 let same = group.iter().all(|&other| other == group[0]);
                 let shared = same.then(|| *(self.parameters)(group[0]));
@@ -266,16 +271,18 @@ impl<'a, P: Fn(u16) -> &'a SphParameters + Sync> Input<'a, P> {
             });
     }
 
-    /// Stores Σ_k ∫ W over P_k in `kernel` and Σ_k ∫ ∇W in `gradient`. Sorting resets both to zero, and they stay zero
-    /// if no walls are near these agents (see [`Fields::forget_walls`]).
-    fn see_walls(&self, agents: Range<usize>, kernel: &mut [f64], gradient: &mut [Vector]) {
-        let first = agents.start;
+    /// Stores Σ_k ∫ W over P_k in `kernel` and Σ_k ∫ ∇W in `gradient`. Sorting empties both, and they stay empty if no
+    /// walls are near these agents (see [`Fields::forget_walls`]).
+    fn see_walls(&self, agents: Range<usize>, kernel: &mut Vec<f64>, gradient: &mut Vec<Vector>) {
+        let (first, count) = (agents.start, agents.len());
         let mut near_walls = self.neighbors.agents_near_walls(agents).peekable();
         if near_walls.peek().is_none() {
             return;
         }
-        kernel.fill(0.0);
-        gradient.fill(Vector::zeros());
+        kernel.clear();
+        kernel.resize(count, 0.0);
+        gradient.clear();
+        gradient.resize(count, Vector::zeros());
         for (i, near) in near_walls {
             let r_i = self.agents.position[i];
             let h = (self.parameters)(self.agents.group[i]).support_radius;

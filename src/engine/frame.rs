@@ -1,10 +1,12 @@
 //! The frozen frame: read by every force, written by none.
 
+use std::ops::Index;
+
 use crate::engine::agents::Agents;
 use crate::engine::clock::Clock;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
-use crate::engine::neighbors::Neighbors;
+use crate::engine::neighbors::{BLOCK, Neighbors};
 use crate::engine::pairs::Packed;
 
 /// Quantities derived from the state, one array each, with the step that writes it in parentheses.
@@ -13,7 +15,7 @@ pub struct Fields {
     /// ρ_i, P/m² (1B).
     pub density: Vec<f64>,
     /// The part of ρ_i from walls, P/m² (1B).
-    pub density_from_walls: Vec<f64>,
+    pub density_from_walls: Walled<f64>,
     /// ρ̂_i, P/m², unclamped (1B).
     pub mean_density: Vec<f64>,
     /// ρ_i⁰, P/m² (1B).
@@ -21,11 +23,45 @@ pub struct Fields {
     /// p_i, 1/s² (1B).
     pub pressure: Vec<f64>,
     /// Σ_k ∫ ∇W over P_k, 1/m (1B). Times −p_i it is the pressure force of all walls.
-    pub wall_gradient: Vec<Vector>,
+    pub wall_gradient: Walled<Vector>,
     /// v_i^pref, m/s (2).
     pub preferred_velocity: Vec<Vector>,
     /// a_i, m/s² (3, 3B, 4).
     pub acceleration: Vec<Vector>,
+}
+
+/// A quantity that is zero for agents without walls near them: in blocks of agents, only those that have some.
+#[derive(Debug, Clone, Default)]
+pub struct Walled<T> {
+    blocks: Vec<Vec<T>>,
+    zero: T,
+}
+
+impl<T: Copy + Default> Walled<T> {
+    /// The blocks of [`BLOCK`] agents; empty where no agent has walls near it.
+    pub fn blocks_mut(&mut self) -> &mut [Vec<T>] {
+        &mut self.blocks
+    }
+
+    fn clear(&mut self) {
+        self.blocks.iter_mut().for_each(Vec::clear);
+    }
+
+    fn resize(&mut self, count: usize) {
+        let blocks = count.div_ceil(BLOCK);
+        self.blocks.resize_with(blocks, Vec::new);
+    }
+}
+
+impl<T> Index<usize> for Walled<T> {
+    type Output = T;
+
+    fn index(&self, i: usize) -> &T {
+        let block = self.blocks.get(i / BLOCK);
+        block
+            .and_then(|block| block.get(i % BLOCK))
+            .unwrap_or(&self.zero)
+    }
 }
 
 impl Fields {
@@ -38,11 +74,11 @@ impl Fields {
     /// Resizes the arrays that step 1B writes.
     pub fn resize_sph(&mut self, count: usize) {
         self.density.resize(count, 0.0);
-        self.density_from_walls.resize(count, 0.0);
+        self.density_from_walls.resize(count);
         self.mean_density.resize(count, 0.0);
         self.rest_density.resize(count, 0.0);
         self.pressure.resize(count, 0.0);
-        self.wall_gradient.resize(count, Vector::zeros());
+        self.wall_gradient.resize(count);
     }
 }
 

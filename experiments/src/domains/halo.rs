@@ -27,7 +27,8 @@ impl Field {
     /// Agents closer than `reach` meters read each other.
     pub fn new(positions: &[Vector], reach: f64) -> Self {
         let mut grid = Grid::default();
-        let order = grid.rebuild(positions, reach, None);
+        let mut order = Vec::new();
+        grid.rebuild(positions, reach, None, &mut order);
         let sorted = order.iter().map(|&i| positions[i as usize]);
         Self {
             positions: sorted.collect(),

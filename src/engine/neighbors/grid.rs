@@ -53,6 +53,8 @@ pub struct Grid {
     period: Option<Period>,
     /// The first agent of each cell, row by row; the last entry is the number of agents.
     start: Vec<u32>,
+    /// The cell of each agent before the sort: memory that every sort needs.
+    cell_of: Vec<u32>,
 }
 
 impl Default for Grid {
@@ -66,45 +68,49 @@ impl Default for Grid {
             rows: 3,
             period: None,
             start: vec![0; 4],
+            cell_of: Vec::new(),
         }
     }
 }
 
 impl Grid {
-    /// Lays a grid with rows of at least `height` meters over `positions` and returns the order that sorts them by
-    /// cell. The sort is stable. All positions lie in the `period`, if there is one.
+    /// Lays a grid with rows of at least `height` meters over `positions`, and finds the order that sorts them by cell.
+    /// The sort is stable. All positions lie in the `period`, if there is one.
     pub fn rebuild(
         &mut self,
         positions: &[Vector],
         height: f64,
         period: Option<Period>,
-    ) -> Vec<u32> {
+        order: &mut Vec<u32>,
+    ) {
         self.period = period;
         let [low, high] = extent(positions);
         self.size_cells(high - low, positions.len(), height);
         self.origin = low - Vector::new(0.0, self.height);
 
-        let cell_of: Vec<u32> = positions
-            .par_iter()
-            .with_min_len(SOME)
-            .map(|&p| self.cell_of(p) as u32)
-            .collect();
+        let mut cell_of = std::mem::take(&mut self.cell_of);
+        cell_of.clear();
+        let cells = positions.par_iter().with_min_len(SOME);
+        cell_of.par_extend(cells.map(|&p| self.cell_of(p) as u32));
+        let cells = self.cells();
         self.start.clear();
-        self.start.resize(self.cells() + 1, 0);
+        self.start.resize(cells + 1, 0);
         for &cell in &cell_of {
             self.start[cell as usize + 1] += 1;
         }
-        for cell in 0..self.cells() {
+        for cell in 0..cells {
             self.start[cell + 1] += self.start[cell];
         }
-        let mut next = self.start.clone();
-        let mut order = vec![0; positions.len()];
+        order.resize(positions.len(), 0);
         for (i, &cell) in cell_of.iter().enumerate() {
-            let place = &mut next[cell as usize];
-            order[*place as usize] = i as u32;
-            *place += 1;
+            let next = &mut self.start[cell as usize];
+            order[*next as usize] = i as u32;
+            *next += 1;
         }
-        order
+        // Each cell's entry is now the start of the next cell.
+        self.start.copy_within(0..cells, 1);
+        self.start[0] = 0;
+        self.cell_of = cell_of;
     }
 
     /// Doubles the cell size, from the smallest, until the number of cells is within the limit.

@@ -2,8 +2,8 @@
 //!
 //! Agents are sorted into the cells of a [`Grid`]. Near neighbors (for SPH and contact) are listed as runs of
 //! agents in memory, for [`Clusters`] of agents that are close together. The lists have a margin, the *skin*:
-//! until an agent has moved by half of it since the sort, they miss no neighbor; in a large crowd, until agents that are
-//! near each other have moved by it against each other ([`Shifts`]). Neighbors in the wide circle of the avoidance
+//! until an agent has moved by half of it since the sort, they miss no neighbor; in a large crowd, until agents that
+//! are near each other have moved by it against each other ([`Shifts`]). Neighbors in the wide circle of the avoidance
 //! methods are read from the grid's rows, without lists.
 
 mod clusters;
@@ -11,6 +11,7 @@ mod grid;
 mod lists;
 mod run;
 mod shifts;
+mod wall_cells;
 
 pub use clusters::{BLOCK, CLUSTER, ClusterBlock, Clusters, TASK};
 pub use grid::{Grid, Place};
@@ -22,11 +23,12 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::engine::agents::Agents;
+use crate::engine::agents::{Agents, Spare};
 use crate::engine::geometry::Walls;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::period::Period;
 use shifts::Tiles;
+use wall_cells::WallCells;
 
 /// Margin of all lists, meters: when an agent has moved by half of it since the sort, all lists are rebuilt. With a
 /// larger margin, lists are rebuilt less often but are longer.
@@ -36,8 +38,8 @@ pub const SKIN: f64 = 0.14;
 /// agents are in fast memory.
 pub const MANY: usize = 30_000;
 
-/// The distance that any agent may move before the next sort if lists follow the crowd, meters. With a longer one, sorts
-/// are fewer, and more walls are listed.
+/// The distance that any agent may move before the next sort if lists follow the crowd, meters. With a longer one,
+/// sorts are fewer, and more walls are listed.
 pub const FOLLOWED: f64 = 1.0;
 
 /// When the lists of near agents are rebuilt, and whether they can miss neighbors in between.
@@ -90,10 +92,14 @@ pub struct Neighbors {
     ranges: Ranges,
     /// Radius within which agents are listed as near, including the skin, meters.
     reach: f64,
+    /// The largest radius of an agent, meters.
+    widest: f64,
     grid: Grid,
     near: Clusters,
     near_walls: Lists,
     far_walls: Lists,
+    /// The walls around each cell of the floor, for both.
+    wall_cells: [WallCells; 2],
     /// The agents' positions at the last sort, meters.
     sorted_at: Vec<Vector>,
     /// The greatest distance of any agent from its position at the last sort, meters.
@@ -103,6 +109,9 @@ pub struct Neighbors {
     tiles: Tiles,
     /// Whether agents that may meet have moved against each other by more than the [`SKIN`].
     are_torn: bool,
+    /// Memory that every sort needs.
+    order: Vec<u32>,
+    spare: Spare,
 }
 
 impl Neighbors {
@@ -112,10 +121,12 @@ impl Neighbors {
         self.travelled = 0.0;
         self.are_torn = false;
         self.near.clear();
-        self.reach = near_radius(agents, &ranges);
+        self.widest = widest(agents);
+        self.reach = ranges.support.max(2.0 * self.widest) + 2.0 * ranges.margin;
         let period = ranges.period;
-        let order = self.grid.rebuild(&agents.position, self.reach, period);
-        agents.arrange(&order);
+        let (grid, order) = (&mut self.grid, &mut self.order);
+        grid.rebuild(&agents.position, self.reach, period, order);
+        agents.arrange_with(order, &mut self.spare);
         self.sorted_at.clone_from(&agents.position);
         let strips = agents.len().div_ceil(STRIP);
         self.strips.resize(strips, Shifts::default());
@@ -134,12 +145,16 @@ impl Neighbors {
     pub fn list_walls(&mut self, agents: &Agents, walls: &Walls) {
         let margin = self.ranges.drift;
         let least = self.ranges.support.max(self.ranges.longest_step);
-        list_walls(&mut self.near_walls, agents, walls, |radius| {
+        let [near, far] = &mut self.wall_cells;
+        let bodies = (agents, self.widest);
+        list_walls(&mut self.near_walls, near, bodies, walls, |radius| {
             least.max(radius) + margin
         });
-        let far = self.ranges.avoidance.into_iter().chain(self.ranges.sight);
-        match far.reduce(f64::max) {
-            Some(radius) => list_walls(&mut self.far_walls, agents, walls, |_| radius + margin),
+        let radii = self.ranges.avoidance.into_iter().chain(self.ranges.sight);
+        match radii.reduce(f64::max) {
+            Some(radius) => {
+                list_walls(&mut self.far_walls, far, bodies, walls, |_| radius + margin);
+            }
             None => self.far_walls.clear(),
         }
     }
@@ -256,6 +271,20 @@ impl Neighbors {
         }
     }
 
+    /// All agents in a rectangle, given by its lower left and upper right corners, and some that are near it. The agents
+    /// may have moved since the lists were found to be valid.
+    pub fn in_rectangle(&self, [low, high]: [Vector; 2]) -> Vec<Run> {
+        let margin = Vector::repeat(self.travelled * (1.0 + 1e-9)); // rounding
+        let mut found = Vec::new();
+        self.grid.inside([low - margin, high + margin], &mut found);
+        found
+    }
+
+    /// The longest step of any agent in a frame, meters.
+    pub fn longest_step(&self) -> f64 {
+        self.ranges.longest_step
+    }
+
     /// The largest support radius, meters.
     pub fn support(&self) -> f64 {
         self.ranges.support
@@ -278,13 +307,15 @@ impl Neighbors {
     }
 }
 
-/// Up to this many candidate walls are checked one by one instead of searching the index.
+/// Up to this many candidate walls of a block of agents are checked for each of them; of more, those around its cell.
 const FEW_WALLS: usize = 16;
 
-/// Lists the walls within reach of each agent; `reach` is a function of the agent's radius.
+/// Lists the walls within reach of each agent; `reach` is a function of the agent's radius, of which `widest` is the
+/// largest.
 fn list_walls(
     lists: &mut Lists,
-    agents: &Agents,
+    cells: &mut WallCells,
+    (agents, widest): (&Agents, f64),
     walls: &Walls,
     reach: impl Fn(f64) -> f64 + Sync,
 ) {
@@ -292,7 +323,11 @@ fn list_walls(
         lists.clear();
         return;
     }
+    if walls.len() > FEW_WALLS {
+        cells.reach_to(walls, reach(widest));
+    }
     let reach = |i: usize| reach(agents.radius[i]);
+    let cells = &*cells;
     lists.rebuild(
         agents.len(),
         |some| {
@@ -301,10 +336,10 @@ fn list_walls(
         },
         |i, candidates, found| {
             let (p, radius) = (agents.position[i], reach(i));
-            if candidates.len() > FEW_WALLS {
-                walls.near(p, radius, found);
-                return;
-            }
+            let candidates = match candidates.len() {
+                ..=FEW_WALLS => candidates,
+                _ => cells.around(walls, p),
+            };
             found.extend(candidates.iter().filter(|&&k| {
                 let wall = walls.wall(k);
                 !wall.is_beyond(p, radius)
@@ -314,10 +349,9 @@ fn list_walls(
     );
 }
 
-/// The range of SPH and contact forces between agents, plus twice the margin, meters.
-fn near_radius(agents: &Agents, ranges: &Ranges) -> f64 {
+/// The largest radius of an agent, meters.
+fn widest(agents: &Agents) -> f64 {
     let radii = agents.radius.par_chunks(BLOCK).with_min_len(TASK);
     let widest = radii.map(|some| some.iter().copied().fold(0.0, f64::max));
-    let widest = widest.reduce(|| 0.0, f64::max);
-    ranges.support.max(2.0 * widest) + 2.0 * ranges.margin
+    widest.reduce(|| 0.0, f64::max)
 }

@@ -8,10 +8,9 @@
 use rayon::prelude::*;
 
 use super::{Arrival, Crowd, Simulation, Stage, TripEnd};
-use crate::engine::agents::Agents;
 use crate::engine::journeys::{Kind, Place, Status};
 use crate::engine::math::{Vector, direction, perpendicular};
-use crate::engine::neighbors::{BLOCK, TASK};
+use crate::engine::neighbors::{BLOCK, Neighbors, TASK};
 use crate::engine::scene::Scene;
 use crate::engine::ways::{nearest_on, side};
 
@@ -47,8 +46,7 @@ struct Line {
 }
 
 impl Line {
-    fn all(scene: &Scene, agents: &Agents) -> Vec<Self> {
-        let longest_step = scene.highest_speed(agents) * scene.clock.time_step();
+    fn all(scene: &Scene, longest_step: f64) -> Vec<Self> {
         let margin = Vector::repeat(longest_step * (1.0 + 1e-9));
         let lines = scene.journeys.places.iter().filter_map(Place::line);
         let around = lines.map(|[a, b]| Self {
@@ -82,7 +80,8 @@ impl Simulation {
         }
         let before = &self.buffers.before;
         self.stages.time(Stage::Journeys, || {
-            let mut crossings = crowd.crossings(scene, before);
+            let neighbors = &self.derived.neighbors;
+            let mut crossings = crowd.crossings(scene, before, neighbors);
             if crowd.clock.is_coarse() {
                 crossings.extend(crowd.meetings(scene, &crossings));
             }
@@ -98,17 +97,22 @@ impl Simulation {
 
 impl Crowd {
     /// All moves across lines, in the order in which they happened.
-    fn crossings(&self, scene: &Scene, before: &[Vector]) -> Vec<Crossing> {
-        let lines = Line::all(scene, &self.agents);
+    fn crossings(&self, scene: &Scene, before: &[Vector], neighbors: &Neighbors) -> Vec<Crossing> {
+        let positions = &self.agents.position;
+        let mut near: Vec<u32> = Vec::new();
+        for line in Line::all(scene, neighbors.longest_step()) {
+            let runs = neighbors.in_rectangle([line.low, line.high]);
+            let agents = runs.into_iter().flat_map(|run| run.agents);
+            near.extend(agents.filter(|&i| line.is_near(positions[i as usize])));
+        }
+        near.sort_unstable();
+        near.dedup(); // near two lines
         let closed: Vec<u16> = (0..scene.journeys.places.len() as u16)
             .filter(|&place| self.is_closed(scene, place))
             .collect();
         let agents = &self.agents;
         let crossing = |agent: usize| {
             let to = agents.position[agent];
-            if !lines.iter().any(|line| line.is_near(to)) {
-                return None;
-            }
             let trip = agents.trip.get(agent).and_then(Option::as_ref);
             let trip = trip.filter(|trip| trip.status == Status::Walking);
             let own = trip.into_iter().flat_map(|trip| {
@@ -133,11 +137,8 @@ impl Crowd {
             });
             crossings.min_by(|a, b| a.part.total_cmp(&b.part))
         };
-        let all = (0..agents.len()).into_par_iter();
-        let mut found: Vec<Crossing> = all
-            .with_min_len(TASK * BLOCK)
-            .filter_map(crossing)
-            .collect();
+        let near = near.into_iter().map(|agent| agent as usize);
+        let mut found: Vec<Crossing> = near.filter_map(crossing).collect();
         let id = |crossing: &Crossing| agents.id[crossing.agent];
         found.sort_by(|a, b| a.part.total_cmp(&b.part).then(id(a).cmp(&id(b))));
         found

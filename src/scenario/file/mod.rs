@@ -20,7 +20,7 @@ use crate::scenario::keys::curve::Curve;
 use crate::scenario::keys::from::FromData;
 use crate::scenario::keys::goals::{Aim, WayFinding};
 use crate::scenario::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE, LONGEST_TIME, STRONGEST};
-use crate::scenario::keys::names::word;
+use crate::scenario::keys::names::{optional_word, word};
 use crate::scenario::keys::numerics::{IntegratorChoice, TimeStep};
 use crate::scenario::keys::people::{Agent, Crowd, Entrance, Grid};
 use crate::scenario::keys::periodic::Periodic;
@@ -106,7 +106,7 @@ pub struct File {
     pub navigation: WayFinding,
     /// By what agents choose ways around walls: `shortest`, or `quickest`, the least expected time, with the people
     /// who wait before doors, in aisles and in other openings of up to 6 m.
-    #[schemars(schema_with = "word::<RouteChoice>", extend("default" = RouteChoice::default()))]
+    #[schemars(schema_with = "optional_word::<RouteChoice>", extend("default" = RouteChoice::default()))]
     pub route_choice: Option<RouteChoice>,
     /// What agents know about waiting times, for `quickest`: those of the whole `floor`, or those in `sight`, before
     /// the openings of the room where they are.

@@ -9,6 +9,11 @@ pub fn word<T: Deserialize<'static>>(_: &mut SchemaGenerator) -> Schema {
     json_schema!({"type": "string", "enum": names::<T>()})
 }
 
+/// The schema of a word, or of a key without a value.
+pub fn optional_word<T: Deserialize<'static>>(generator: &mut SchemaGenerator) -> Schema {
+    json_schema!({"anyOf": [word::<T>(generator), {"type": "null"}]})
+}
+
 /// The keys of a struct or the words of an enum, in the order of their declaration, as serde reads them.
 pub fn names<T: Deserialize<'static>>() -> &'static [&'static str] {
     let mut names: &[&str] = &[];
