@@ -5,10 +5,12 @@
 //! |---|---|---|
 //! | [`domains`] | how would crowds divide among processes? | docs/scaling.md |
 //! | [`compare`] | how fast are other engines on the same crowds? | docs/performance.md |
+//! | [`symmetric`] | would sums that visit each pair once pay? | docs/performance.md |
 //! | [`walls`] | how accurate are the integrals over walls by this and other methods? | docs/accuracy.md |
 
 #![warn(clippy::unwrap_used)]
 
 pub mod compare;
 pub mod domains;
+pub mod symmetric;
 pub mod walls;

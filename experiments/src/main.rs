@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
-use experiments::{compare, domains, walls};
+use experiments::{compare, domains, symmetric, walls};
 use sandbox::cli::{Failure, PrintOptions, ResultOptions, TimingOptions, UpdateOptions, main_of};
 
 /// Repeat finished experiments
@@ -29,6 +29,8 @@ enum Command {
         after_help = "Example: cargo run --release -p experiments -- compare --python peers/bin/python"
     )]
     Compare(CompareOptions),
+    #[command(about = symmetric::BENCHMARK.about)]
+    Symmetric(TimingOptions),
     #[command(
         about = walls::ABOUT,
         after_help = "Example: cargo run --release -p experiments -- walls --update docs/tables/accuracy.md",
@@ -69,6 +71,10 @@ fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::Domains(options) => {
             let benchmark = domains::BENCHMARK;
+            options.run(benchmark.name, |plan, say| benchmark.measure(plan, say))
+        }
+        Command::Symmetric(options) => {
+            let benchmark = symmetric::BENCHMARK;
             options.run(benchmark.name, |plan, say| benchmark.measure(plan, say))
         }
         Command::Compare(CompareOptions { timing, python }) => timing

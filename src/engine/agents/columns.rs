@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::engine::math::Vector;
 
 /// From this number of agents on, arrays are arranged in parallel.
-const SOME: usize = 2048;
+const SOME: usize = 4096;
 /// From this number of agents on, the parts of each array are arranged in parallel.
 const MANY: usize = 50_000;
 

@@ -271,8 +271,8 @@ impl Neighbors {
         }
     }
 
-    /// All agents in a rectangle, given by its lower left and upper right corners, and some that are near it. The agents
-    /// may have moved since the lists were found to be valid.
+    /// All agents in a rectangle, given by its lower left and upper right corners, and some that are near it. The
+    /// agents may have moved since the lists were found to be valid.
     pub fn in_rectangle(&self, [low, high]: [Vector; 2]) -> Vec<Run> {
         let margin = Vector::repeat(self.travelled * (1.0 + 1e-9)); // rounding
         let mut found = Vec::new();

@@ -19,7 +19,7 @@ use crate::output::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "scaling",
-    about: "time per agent and frame, and memory per agent, of the concert's dense crowd at rest and of crowds that walk",
+    about: "time per agent and frame, and memory per agent, of crowds of several sizes, at rest and walking",
     run,
 };
 
