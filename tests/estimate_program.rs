@@ -232,10 +232,20 @@ fn the_number_of_runs_is_predicted_from_earlier_ones() {
     let folder = tempfile::tempdir().unwrap();
     let plan = ["--error", "time_secs=3%", "--plan"];
     let before = json(&run_in(folder.path(), &estimate("out", &plan)));
-    assert!(before["expected"].is_null());
+    // Before the first run, from similar results in other scenes.
+    assert!(before["expected"]["based_on"].is_null());
+    assert!(before["expected"]["known"].as_u64().unwrap() > 0);
+    assert!(!before["expected"]["runs"].as_array().unwrap().is_empty());
+    // An error in the unit of a result says nothing about other scenes.
+    let absolute = json(&run_in(
+        folder.path(),
+        &estimate("out", &["--error", "time_secs=2", "--plan"]),
+    ));
+    assert!(absolute["expected"].is_null());
     let made = run_in(folder.path(), &estimate("out", &plan[..2]));
     let made = answer(&made)["estimate"]["runs"]["all"].as_f64().unwrap();
     let after = json(&run_in(folder.path(), &estimate("out", &plan)));
+    assert_eq!(after["expected"]["based_on"], "evacuation");
     let runs = after["expected"]["runs"].as_array().unwrap();
     let runs: f64 = runs.iter().map(|of| of[1].as_f64().unwrap()).sum();
     assert!((0.5..2.0).contains(&(runs / made)), "{runs} of {made}");
