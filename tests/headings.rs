@@ -22,6 +22,14 @@ fn parameters() -> Parameters {
     }
 }
 
+/// With this preference for the right side, meters.
+fn evading(side_preference: f64) -> Parameters {
+    Parameters {
+        side_preference: Some(side_preference),
+        ..parameters()
+    }
+}
+
 fn law() -> Headings {
     parameters().headings()
 }
@@ -46,12 +54,13 @@ fn utilities(simulation: &Simulation, i: usize, law: &Headings) -> [f64; COUNT] 
         for j in (0..agents.len()).filter(|&j| j != i) {
             let d = agents.position[j] - agents.position[i];
             let u = (agents.velocity[j] - agents.velocity[i]).dot(&heading);
-            let (along, across) = (d.dot(&heading), heading.perp(&d).abs());
+            let cosine = direction(frame.fields.preferred_velocity[j]).dot(&way);
+            let oncoming = (-4.0 * cosine).clamp(0.0, 1.0);
+            let left = heading.perp(&d) + law.side_preference * oncoming;
+            let (along, across) = (d.dot(&heading), left.abs());
             let fade = 0.5 * law.heading_half_width;
             let outside =
                 ((across - law.heading_half_width) / fade).max(0.0) + (1.0 - along / fade).max(0.0);
-            let cosine = direction(frame.fields.preferred_velocity[j]).dot(&way);
-            let oncoming = (-4.0 * cosine).clamp(0.0, 1.0);
             let expected = along
                 + law.headway.headway_anticipation * u.max(0.0)
                 + law.evasion_time * oncoming * u.clamp(-2.0 * speed, 0.0);
@@ -65,12 +74,19 @@ fn utilities(simulation: &Simulation, i: usize, law: &Headings) -> [f64; COUNT] 
 
 #[test]
 fn agents_choose_the_heading_with_the_greatest_utility() {
-    let law = law();
-    for (precision, exact) in [(Precision::Double, 1e-12), (Precision::Mixed, 1e-4)] {
+    let cases = [
+        (Precision::Double, 1e-12, 0.3),
+        (Precision::Mixed, 1e-4, 0.0),
+        (Precision::Mixed, 1e-4, -0.2),
+    ];
+    for (precision, exact, side) in cases {
+        let parameters = evading(side);
+        let law = parameters.headings();
         let (mut turned, mut all) = (0, 0);
         for seed in 0..10 {
             let mut scene = crowd(WalkingLawKind::Headings, seed);
             scene.precision = precision;
+            scene.groups[0].blend = blend_with("sph", &parameters);
             let simulation = evaluated(scene);
             let frame = simulation.frame();
             for i in 0..frame.agents.len() {
@@ -258,11 +274,28 @@ fn two_agents_that_meet_pass_each_other() {
 }
 
 #[test]
+fn agents_who_meet_head_on_evade_to_the_preferred_side() {
+    for (side, heading) in [(0.2, -1), (-0.2, 1)] {
+        let mut scene = scene(vec![], blend_with("sph", &evading(side)));
+        scene.agents = vec![
+            walker(vector(-2.0, 0.0), vector(1.4, 0.0), vector(100.0, 0.0)),
+            walker(vector(2.0, 0.0), vector(-1.4, 0.0), vector(-100.0, 0.0)),
+        ];
+        let simulation = evaluated(scene);
+        let held = &simulation.frame().agents.heading;
+        assert!(held.iter().all(|held| held.signum() == heading), "{held:?}");
+    }
+}
+
+#[test]
 fn a_mirrored_crowd_chooses_mirrored_headings() {
     let mirror = |v: Vector| vector(v.x, -v.y);
     for seed in 0..5 {
-        let original = crowd(WalkingLawKind::Headings, seed);
+        let side = 0.1 * seed as f64;
+        let mut original = crowd(WalkingLawKind::Headings, seed);
         let mut mirrored = original.clone();
+        original.groups[0].blend = blend_with("sph", &evading(side));
+        mirrored.groups[0].blend = blend_with("sph", &evading(-side));
         for agent in &mut mirrored.agents {
             agent.position = mirror(agent.position);
             agent.velocity = mirror(agent.velocity);
@@ -283,6 +316,8 @@ fn motivation_and_density_shorten_the_gap_and_narrowings_lengthen_it() {
         hurry_share: Some(0.5),
         press_share: Some(0.4),
         press_density: Some(4.0),
+        queue_share: Some(0.2),
+        queue_density: Some(10.0),
         narrowing_share: Some(0.6),
         narrowing_range: Some(2.0),
         ..parameters()
@@ -292,12 +327,16 @@ fn motivation_and_density_shorten_the_gap_and_narrowings_lengthen_it() {
     assert_eq!(gap.factor(1.0, 0.0, None), 0.5);
     assert!((gap.factor(0.0, 9.0, None) - 0.6).abs() < 1e-12);
     assert!((gap.factor(0.0, 4.5, None) - 0.8).abs() < 1e-12);
+    // Calm people in a queue, here denser than packed ones, keep longer gaps; those who hurry neither press nor queue.
+    assert!((gap.factor(0.0, 10.5, None) - 0.6 * 1.1).abs() < 1e-12);
+    assert!((gap.factor(0.0, 20.0, None) - 0.6 * 1.2).abs() < 1e-12);
+    assert_eq!(gap.factor(1.0, 20.0, None), 0.5);
     assert!((gap.factor(0.0, 0.0, Some([0.0, 1.0])) - 1.6).abs() < 1e-12);
     assert_eq!(gap.factor(0.0, 0.0, Some([0.0, 0.0])), 1.0);
     let at_range = gap.factor(0.0, 0.0, Some([2.0, 1.0]));
     assert!((at_range - 1.0 - 0.6 * (-1.0_f64).exp()).abs() < 1e-12);
     for motivation in [0.0, 0.3, 1.0] {
-        for density in [0.0, 4.7, 10.0] {
+        for density in [0.0, 4.7, 10.3] {
             for narrowing in [None, Some([0.5, 0.7])] {
                 let factor = gap.factor(motivation, density, narrowing);
                 assert!(factor >= gap.shortest() && factor <= gap.longest());

@@ -108,6 +108,9 @@ pub struct Parameters {
     /// [`Headings::heading_persistence`].
     #[schemars(range(min = 0, max = 10))]
     pub heading_persistence: Option<f64>,
+    /// [`Headings::side_preference`].
+    #[schemars(range(min = -2, max = 2))]
+    pub side_preference: Option<f64>,
     /// [`Headings::evasion_time`].
     #[schemars(range(min = 0, max = 10))]
     pub evasion_time: Option<f64>,
@@ -120,6 +123,12 @@ pub struct Parameters {
     /// [`Gap::press_density`].
     #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
     pub press_density: Option<f64>,
+    /// [`Gap::queue_share`].
+    #[schemars(range(min = 0, max = 10))]
+    pub queue_share: Option<f64>,
+    /// [`Gap::queue_density`].
+    #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
+    pub queue_density: Option<f64>,
     /// [`Gap::narrowing_share`].
     #[schemars(range(min = -0.9, max = 10))]
     pub narrowing_share: Option<f64>,
@@ -251,10 +260,13 @@ impl Parameters {
             heading_half_width: finite(self.heading_half_width).or(fallback.heading_half_width),
             look_ahead: finite(self.look_ahead).or(fallback.look_ahead),
             heading_persistence: finite(self.heading_persistence).or(fallback.heading_persistence),
+            side_preference: finite(self.side_preference).or(fallback.side_preference),
             evasion_time: finite(self.evasion_time).or(fallback.evasion_time),
             hurry_share: finite(self.hurry_share).or(fallback.hurry_share),
             press_share: finite(self.press_share).or(fallback.press_share),
             press_density: finite(self.press_density).or(fallback.press_density),
+            queue_share: finite(self.queue_share).or(fallback.queue_share),
+            queue_density: finite(self.queue_density).or(fallback.queue_density),
             narrowing_share: finite(self.narrowing_share).or(fallback.narrowing_share),
             narrowing_range: finite(self.narrowing_range).or(fallback.narrowing_range),
             jam_density: finite(self.jam_density).or(fallback.jam_density),
@@ -345,6 +357,7 @@ impl Parameters {
             look_ahead: finite(self.look_ahead).unwrap_or(paper.look_ahead),
             heading_persistence: finite(self.heading_persistence)
                 .unwrap_or(paper.heading_persistence),
+            side_preference: finite(self.side_preference).unwrap_or(paper.side_preference),
             evasion_time: finite(self.evasion_time).unwrap_or(paper.evasion_time),
         }
     }
@@ -356,6 +369,8 @@ impl Parameters {
             hurry_share: finite(self.hurry_share).unwrap_or(paper.hurry_share),
             press_share: finite(self.press_share).unwrap_or(paper.press_share),
             press_density: finite(self.press_density).unwrap_or(paper.press_density),
+            queue_share: finite(self.queue_share).unwrap_or(paper.queue_share),
+            queue_density: finite(self.queue_density).unwrap_or(paper.queue_density),
             narrowing_share: finite(self.narrowing_share).unwrap_or(paper.narrowing_share),
             narrowing_range: finite(self.narrowing_range).unwrap_or(paper.narrowing_range),
         }

@@ -133,7 +133,7 @@ impl WalkingLaw {
         match self {
             Self::Headway(_) | Self::DensityAhead(_) => false,
             Self::Drag(_) => true,
-            Self::Headings(law) => law.gap.press_share != 0.0,
+            Self::Headings(law) => law.gap.press_share != 0.0 || law.gap.queue_share != 0.0,
         }
     }
 

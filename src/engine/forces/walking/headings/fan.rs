@@ -62,7 +62,7 @@ impl Headings {
             let radius = frame.agents.radius[i];
             let (wall_room, wall) = nearest_wall(frame, i, radius, turned, far);
             let mut least = (far, None);
-            for (j, r_ij) in around(frame, i, far + 2.0 * self.evasion_time * speed) {
+            for (j, r_ij) in around(frame, i, far + self.farther(speed)) {
                 let relative = frame.agents.velocity[j] - frame.agents.velocity[i];
                 let seen = Seen {
                     along: -r_ij.dot(&turned),
@@ -168,11 +168,13 @@ impl Headings {
                 splat::<R, S>(simd, self.headway.headway_anticipation),
                 splat::<R, S>(simd, self.evasion_time),
             ],
+            leftward: splat::<R, S>(simd, self.side_preference),
             fastest: walkers.speed * splat::<R, S>(simd, -2.0),
             per_fade: splat::<R, S>(simd, 1.0 / fade),
             edge: splat::<R, S>(simd, -self.heading_half_width / fade),
             far_squared: far * far,
-            farther: walkers.speed * splat::<R, S>(simd, 2.0 * self.evasion_time),
+            farther: walkers.speed * splat::<R, S>(simd, 2.0 * self.evasion_time)
+                + splat::<R, S>(simd, self.side_preference.abs()),
             far,
             widest: far * far,
             squared: [far * far; COUNT],
@@ -220,6 +222,8 @@ struct Rooms<'a, R: Real, S: Simd, const MEETS: bool> {
     turned: [[Lanes<R, S>; 2]; COUNT],
     /// t and t_e, seconds.
     times: [Lanes<R, S>; 2],
+    /// b, meters.
+    leftward: Lanes<R, S>,
     /// −2 s_i: agents come closer at this velocity at most, m/s.
     fastest: Lanes<R, S>,
     /// 1/f, 1/m.
@@ -273,10 +277,12 @@ impl<'a, R: Real, S: Simd, const MEETS: bool> PairSum<R, S> for Rooms<'a, R, S, 
         let leftward = v_x * y - v_y * x - self.own[1];
         let [time, evasion] = self.times;
         let evasion = evasion * oncoming;
+        let shift = self.leftward * oncoming;
         let mut widest = zero;
         for (squared, [cosine, sine]) in self.squared.iter_mut().zip(self.turned) {
             let along = left.mul_add(sine, ahead * cosine);
             let across = left * cosine - ahead * sine;
+            let across = if MEETS { across + shift } else { across };
             let away = leftward.mul_add(sine, faster * cosine);
             let expected = away.max(zero).mul_add(time, along);
             let expected = match MEETS {

@@ -4,17 +4,21 @@ use schemars::JsonSchema;
 
 /// Parameters of the factor of T.
 ///
-/// Hurried people and people in dense crowds follow each other more closely. Calm people keep longer gaps where the way
-/// becomes narrower.
+/// Hurried people follow each other more closely. Calm people do so only where they are packed; in a queue they keep
+/// longer gaps. All keep longer gaps where the way becomes narrower.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
 #[schemars(default)]
 pub struct Gap {
     /// `headings`: the share of T that agents with a motivation of 1 do without.
     pub hurry_share: f64,
-    /// `headings`: the share of T that agents in dense crowds do without.
+    /// `headings`: the share of T that calm agents in packed crowds do without.
     pub press_share: f64,
     /// `headings`, P/m²: the density from which on they do so; they do so fully 1 P/m² above it.
     pub press_density: f64,
+    /// `headings`: T of calm agents in a queue is longer by this share of it.
+    pub queue_share: f64,
+    /// `headings`, P/m²: the density from which on it is longer; it is so fully 1 P/m² above it.
+    pub queue_density: f64,
     /// `headings`: T is longer by this share of it at a narrowing.
     pub narrowing_share: f64,
     /// `headings`, meters: the distance from a narrowing at which this share has fallen to 1/e.
@@ -27,6 +31,8 @@ impl Default for Gap {
             hurry_share: 0.0,
             press_share: 0.0,
             press_density: 4.5,
+            queue_share: 0.0,
+            queue_density: 1.5,
             narrowing_share: 0.0,
             narrowing_range: 2.0,
         }
@@ -38,12 +44,14 @@ impl Gap {
     /// the next narrowing, meters, and how much it counts, from 0 to 1.
     pub fn factor(&self, motivation: f64, density: f64, narrowing: Option<[f64; 2]>) -> f64 {
         let hurry = 1.0 - self.hurry_share * motivation;
-        let press = 1.0 - self.press_share * (density - self.press_density).clamp(0.0, 1.0);
+        let calm = 1.0 - motivation;
+        let press = 1.0 - self.press_share * calm * (density - self.press_density).clamp(0.0, 1.0);
+        let queue = 1.0 + self.queue_share * calm * (density - self.queue_density).clamp(0.0, 1.0);
         let narrow = narrowing.map_or(1.0, |[distance, counts]| {
             let near = distance / self.narrowing_range;
             1.0 + self.narrowing_share * counts * (-near * near).exp()
         });
-        hurry * press * narrow
+        hurry * press * queue * narrow
     }
 
     /// Narrowings farther away than this do not count, meters.
@@ -53,11 +61,11 @@ impl Gap {
 
     /// The greatest factor.
     pub fn longest(&self) -> f64 {
-        1.0 + self.narrowing_share.max(0.0)
+        (1.0 + self.narrowing_share.max(0.0)) * (1.0 + self.queue_share.max(0.0))
     }
 
     /// The least factor.
     pub fn shortest(&self) -> f64 {
-        (1.0 - self.hurry_share) * (1.0 - self.press_share)
+        (1.0 - self.hurry_share).min(1.0 - self.press_share)
     }
 }

@@ -63,6 +63,9 @@ pub struct Headings {
     pub look_ahead: f64,
     /// p (`headings`), m/s per radian: the utility that a turn costs. Higher: agents keep to their headings.
     pub heading_persistence: f64,
+    /// b (`headings`), meters: agents expect those that come toward them this much farther to their left, and evade to
+    /// the right; negative: to the left.
+    pub side_preference: f64,
     /// `headings`, seconds: the time after which agents look at the distance to agents that come toward them. Longer:
     /// they evade earlier.
     pub evasion_time: f64,
@@ -77,6 +80,7 @@ impl Default for Headings {
             heading_half_width: 0.4,
             look_ahead: 0.2,
             heading_persistence: 0.05,
+            side_preference: 0.0,
             evasion_time: 0.5,
         }
     }
@@ -87,7 +91,7 @@ impl Default for Headings {
 pub struct Seen {
     /// The distance along the heading.
     pub along: f64,
-    /// The distance across it.
+    /// The distance to its left.
     pub across: f64,
     /// The relative velocity (v_j − v_i) along the heading.
     pub away: f64,
@@ -113,25 +117,31 @@ impl Headings {
     /// beyond `far` outside of the lane.
     ///
     /// d² = max(0, a + t max(0, u) + t_e o max(−2 s_i, min(0, u)))² + c²
-    ///      + far² (max(0, (|c| − w_c)/f) + max(0, 1 − a/f)), with f = w_c/2
+    ///      + far² (max(0, (|c| − w_c)/f) + max(0, 1 − a/f)), with f = w_c/2,
     ///
-    /// and o = min(1, 4 max(0, −ê_i·ê_j)): between 0 and 1, the more the agents want to walk against each other.
+    /// c the distance to the left of the heading plus b o, and o = min(1, 4 max(0, −ê_i·ê_j)): between 0 and 1, the more the agents want to walk against each other.
     /// `speed` is the preferred speed s_i, m/s.
     pub fn distance(&self, (far, speed): (f64, f64), seen: &Seen) -> f64 {
         let fade = FADE * self.heading_half_width;
-        let outside = ((seen.across.abs() - self.heading_half_width) / fade).max(0.0)
-            + (1.0 - seen.along / fade).max(0.0);
         let oncoming = (super::headway::AGAINST * (-seen.alike).max(0.0)).min(1.0);
+        let across = seen.across + self.side_preference * oncoming;
+        let outside = ((across.abs() - self.heading_half_width) / fade).max(0.0)
+            + (1.0 - seen.along / fade).max(0.0);
         let expected = seen.along
             + self.headway.headway_anticipation * seen.away.max(0.0)
             + self.evasion_time * oncoming * seen.away.clamp(-2.0 * speed, 0.0);
         let expected = expected.max(0.0);
-        (expected * expected + seen.across * seen.across + far * far * outside).sqrt()
+        (expected * expected + across * across + far * far * outside).sqrt()
     }
 
     /// How far an agent with this preferred speed, m/s, looks along its headings, meters; `gap` is the factor of T.
     pub fn sight(&self, speed: f64, gap: f64) -> f64 {
         self.headway.headway_length + self.headway.headway_time * gap * speed + self.look_ahead
+    }
+
+    /// How much farther away agents that come toward an agent with this preferred speed, m/s, count, meters.
+    fn farther(&self, speed: f64) -> f64 {
+        2.0 * self.evasion_time * speed + self.side_preference.abs()
     }
 
     /// The unit vectors at all φ_k from the x axis.
@@ -182,9 +192,11 @@ impl Headings {
 
     /// The rectangle around an agent in which others count.
     pub(super) fn view(&self) -> View {
+        let one_way = self.view_of_one_way();
         View {
             more_time: 2.0 * self.evasion_time,
-            ..self.view_of_one_way()
+            aside: one_way.aside + self.side_preference.abs(),
+            ..one_way
         }
     }
 
