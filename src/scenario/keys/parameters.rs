@@ -348,17 +348,16 @@ impl Parameters {
 
     /// The choice of headings.
     pub fn headings(&self) -> Headings {
-        let paper = Headings::default();
+        let of = Headings::default();
         Headings {
             headway: self.headway(),
             gap: self.gap(),
-            heading_angle: finite(self.heading_angle).unwrap_or(paper.heading_angle),
-            heading_half_width: finite(self.heading_half_width).unwrap_or(paper.heading_half_width),
-            look_ahead: finite(self.look_ahead).unwrap_or(paper.look_ahead),
-            heading_persistence: finite(self.heading_persistence)
-                .unwrap_or(paper.heading_persistence),
-            side_preference: finite(self.side_preference).unwrap_or(paper.side_preference),
-            evasion_time: finite(self.evasion_time).unwrap_or(paper.evasion_time),
+            heading_angle: finite(self.heading_angle).unwrap_or(of.heading_angle),
+            heading_half_width: finite(self.heading_half_width).unwrap_or(of.heading_half_width),
+            look_ahead: finite(self.look_ahead).unwrap_or(of.look_ahead),
+            heading_persistence: finite(self.heading_persistence).unwrap_or(of.heading_persistence),
+            side_preference: finite(self.side_preference).unwrap_or(of.side_preference),
+            evasion_time: finite(self.evasion_time).unwrap_or(of.evasion_time),
         }
     }
 
