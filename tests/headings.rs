@@ -277,11 +277,8 @@ fn two_agents_that_meet_pass_each_other() {
 fn a_mirrored_crowd_chooses_mirrored_headings() {
     let mirror = |v: Vector| vector(v.x, -v.y);
     for seed in 0..5 {
-        let side = 0.1 * seed as f64;
-        let mut original = crowd(WalkingLawKind::Headings, seed);
+        let original = crowd(WalkingLawKind::Headings, seed);
         let mut mirrored = original.clone();
-        original.groups[0].blend = blend_with("sph", &evading(side));
-        mirrored.groups[0].blend = blend_with("sph", &evading(-side));
         for agent in &mut mirrored.agents {
             agent.position = mirror(agent.position);
             agent.velocity = mirror(agent.velocity);

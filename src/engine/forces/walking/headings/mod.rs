@@ -119,8 +119,8 @@ impl Headings {
     /// d² = max(0, a + t max(0, u) + t_e o max(−2 s_i, min(0, u)))² + c²
     ///      + far² (max(0, (|c| − w_c)/f) + max(0, 1 − a/f)), with f = w_c/2,
     ///
-    /// c the distance to the left of the heading plus b o, and o = min(1, 4 max(0, −ê_i·ê_j)): between 0 and 1, the more
-    /// the agents want to walk against each other. `speed` is the preferred speed s_i, m/s.
+    /// c the distance to the left of the heading plus b o, and o = min(1, 4 max(0, −ê_i·ê_j)): between 0 and 1, the
+    /// more the agents want to walk against each other. `speed` is the preferred speed s_i, m/s.
     pub fn distance(&self, (far, speed): (f64, f64), seen: &Seen) -> f64 {
         let fade = FADE * self.heading_half_width;
         let oncoming = (super::headway::AGAINST * (-seen.alike).max(0.0)).min(1.0);
