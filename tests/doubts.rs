@@ -37,6 +37,25 @@ fn an_ordinary_room_gets_no_note() {
 }
 
 #[test]
+fn crowds_with_several_ways_are_told_how_they_choose() {
+    let mut crowded = room();
+    crowded["crowds"][0]["number"] = json!(120);
+    assert_eq!(notes(&crowded), [""; 0], "there is one way");
+    let exit = crowded["exits"][0].clone();
+    crowded["obstacles"] = json!([[[6, 4], [7, 4], [7, 6], [6, 6]]]);
+    assert!(note(&crowded).contains("take the shortest way"));
+    for choice in ["shortest", "quickest"] {
+        crowded["route_choice"] = json!(choice);
+        assert_eq!(notes(&crowded), [""; 0]);
+    }
+    let mut exits = room();
+    exits["exits"] = json!([exit, {"name": "west", "line": [[0, 4], [0, 6]]}]);
+    assert_eq!(notes(&exits), [""; 0], "they are few");
+    exits["crowds"][0]["number"] = json!(120);
+    assert!(note(&exits).contains("take the shortest way"));
+}
+
+#[test]
 fn a_plan_in_centimeters_is_noted() {
     let mut room = room();
     room["walkable_area"] = json!([[[[0, 0], [2000, 0], [2000, 1000], [0, 1000]]]]);

@@ -63,6 +63,7 @@ mod reference_states;
 mod resumed;
 mod round;
 mod route_choice;
+mod route_gains;
 mod runs;
 mod rvo;
 mod rvo_contact;

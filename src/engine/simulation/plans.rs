@@ -3,7 +3,7 @@
 //! An agent expects to pass an opening when it has walked there, or when all agents that are bound for it and nearer
 //! have passed at its flow, whichever is later. Beyond it, the least time to the goal is that of Dijkstra's algorithm
 //! over openings, which runs once per second for each goal. Agents follow the path map of their goal as long as its
-//! way leads through the opening that they have chosen.
+//! way leads through the opening that they have chosen; with a crowd before the opening they walk straight to it.
 
 use rand::Rng;
 use rayon::prelude::*;
@@ -26,6 +26,14 @@ const ORDER: u32 = 0x9E37_79B9;
 /// An agent changes to another opening if that saves at least this time, seconds, and this part of the time.
 const LEAST_GAIN: f64 = 1.0;
 const LEAST_SHARE: f64 = 0.1;
+/// Agents that choose for the first time in the same frame do so in this many batches of at least this size. Those of
+/// each see the waits that follow from the choices before; when all have chosen, they choose again.
+const BATCHES: usize = 8;
+const LEAST_BATCH: usize = 8;
+/// With so many agents ahead per meter of an opening, agents use its whole width: they walk straight to it, not to the
+/// corner that the shortest way bends around.
+const CROWD_PER_METER: f64 = 3.0;
+
 /// The ways that an agent compares.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
@@ -74,11 +82,11 @@ impl Simulation {
         let plan = crowd.agents.plan.get(i).copied().flatten()?;
         let ways = scene.ways.as_ref()?;
         let p = crowd.agents.position[i];
-        let points = ways.course(p, crowd.agents.destination(i));
+        let shortest = ways.shortest((p, plan.triangle), plan.goal);
         Some(Comparison {
             plan,
-            shortest: scene.rooms()?.first_on(p, plan.triangle, &points),
-            outlooks: crowd.outlooks_of(scene, i, plan.goal, plan.triangle),
+            shortest: shortest.and_then(|shortest| shortest.step),
+            outlooks: crowd.outlooks_of(scene, i, (plan.goal, plan.triangle), shortest),
         })
     }
 }
@@ -95,18 +103,40 @@ impl Crowd {
         progress.onward.resize(rooms.goals(), Vec::new());
         let due = self.due(ways, rooms);
         if bound::is_due(&self.clock) {
-            let known = (0..rooms.goals()).into_par_iter().map(|goal| {
-                let is_used = !self.progress.onward[goal].is_empty();
-                self.times(scene)
-                    .filter(|_| is_used)
-                    .map(|times| times.onward(goal))
-            });
-            let known: Vec<Option<Vec<f64>>> = known.collect();
-            self.progress.onward = known.into_iter().map(Option::unwrap_or_default).collect();
+            self.look_ahead(scene, rooms);
         }
-        for due in due {
-            self.plan(scene, &due);
+        let (new, others): (Vec<Due>, Vec<Due>) =
+            due.into_iter().partition(|due| due.triangles[0].is_none());
+        for due in &others {
+            self.plan(scene, due, false);
         }
+        let rounds = match scene.by_time() && new.len() > LEAST_BATCH {
+            true => 0..2,
+            false => 0..1,
+        };
+        let size = new.len().div_ceil(BATCHES).max(LEAST_BATCH);
+        for round in rounds.clone() {
+            for (k, batch) in new.chunks(size).enumerate() {
+                if k + round > 0 && rounds.len() > 1 {
+                    self.look_ahead(scene, rooms);
+                }
+                for due in batch {
+                    self.plan(scene, due, round > 0);
+                }
+            }
+        }
+    }
+
+    /// Finds the times from each opening on, for the goals of agents.
+    fn look_ahead(&mut self, scene: &Scene, rooms: &Rooms) {
+        let known = (0..rooms.goals()).into_par_iter().map(|goal| {
+            let is_used = !self.progress.onward[goal].is_empty();
+            self.times(scene)
+                .filter(|_| is_used)
+                .map(|times| times.onward(goal))
+        });
+        let known: Vec<Option<Vec<f64>>> = known.collect();
+        self.progress.onward = known.into_iter().map(Option::unwrap_or_default).collect();
     }
 
     /// The agents that enter a room, have a new goal or compare their ways again, in a fixed order. The others only
@@ -154,8 +184,8 @@ impl Crowd {
         due
     }
 
-    /// An agent that is due compares its ways.
-    fn plan(&mut self, scene: &Scene, due: &Due) {
+    /// An agent that is due compares its ways; `afresh`: whatever it has planned.
+    fn plan(&mut self, scene: &Scene, due: &Due, afresh: bool) {
         let (i, goal) = (due.agent, due.goal);
         let (Some(ways), [before, Some(here)]) = (&scene.ways, due.triangles) else {
             return;
@@ -181,9 +211,10 @@ impl Crowd {
                 self.progress.places[usize::from(door)].passed += 1;
             }
         }
-        let outlooks = self.outlooks_of(scene, i, goal, here);
+        let shortest = ways.shortest((p, here), goal);
+        let outlooks = self.outlooks_of(scene, i, (goal, here), shortest);
         let kept = kept(
-            old.filter(|old| old.goal == goal),
+            old.filter(|old| old.goal == goal && !afresh),
             taken,
             from.is_some(),
             &outlooks,
@@ -198,8 +229,9 @@ impl Crowd {
         };
         let changes = kept.is_some() && chosen.map(|one| one.step) != kept.map(|one| one.step);
         let toward = chosen.and_then(|chosen| chosen.step);
-        let points = ways.course(p, self.agents.destination(i));
-        let detours = chosen.is_some() && rooms.first_on(p, here, &points) != toward;
+        let is_elsewhere = shortest.is_none_or(|shortest| shortest.step != toward);
+        let detours =
+            chosen.is_some_and(|way| is_elsewhere || scene.by_time() && is_crowded(&way, rooms));
         let turns = old.map_or(0, |old| old.turns) + 1;
         let id = self.agents.id[i];
         let mut random = random::stream(scene.seed, Purpose::Plan, id, u64::from(turns));
@@ -233,6 +265,12 @@ impl Crowd {
         }
         self.agents.plan[i] = Some(plan);
     }
+}
+
+/// Whether a crowd stands before the opening of a way.
+fn is_crowded(way: &Outlook, rooms: &Rooms) -> bool {
+    let width = way.step.map(|step| rooms.opening(step).width());
+    width.is_some_and(|width| f64::from(way.ahead) >= CROWD_PER_METER * width)
 }
 
 /// The way that an agent keeps unless another one is clearly quicker: the one that it has planned, and after a step the

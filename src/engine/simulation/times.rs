@@ -4,7 +4,7 @@ use super::bound;
 use super::{Crowd, Progress, Simulation};
 use crate::engine::math::Vector;
 use crate::engine::scene::{Knowledge, Scene};
-use crate::engine::ways::{Destination, Rooms, Step};
+use crate::engine::ways::{Destination, Rooms, Shortest, Step};
 
 /// Waiting before a closed door is expected to take this long, seconds.
 const CLOSED: f64 = 3600.0;
@@ -94,15 +94,20 @@ impl Times<'_> {
         self.rooms.onward(goal, leg)
     }
 
-    /// The ways out of the room of `p`, in triangle `t`, that lead to a goal; `onward` are the times beyond.
+    /// The ways out of the room of `p`, in triangle `t`, that lead to a goal; `onward` are the times beyond, for the
+    /// scene's speed.
+    ///
+    /// Ways lead over the middles of openings, but the length of the `shortest` one is exact.
     pub fn outlooks(
         &self,
         (p, t): (Vector, u32),
         goal: usize,
         onward: &[f64],
-        speed: f64,
+        (speed, shortest): (f64, Option<Shortest>),
     ) -> Vec<Outlook> {
         let speed = speed.max(SLOWEST);
+        let slower = 1.0 / speed - 1.0 / self.scene.preferred_speed.max(SLOWEST);
+        let exact = shortest.filter(|_| !self.rooms.has_one_way());
         let direct = self.rooms.length_to_goal(p, t, goal).map(|length| Outlook {
             step: None,
             length,
@@ -114,15 +119,20 @@ impl Times<'_> {
         let steps = self.rooms.steps_out(self.rooms.room(t)).iter();
         let through = steps.filter_map(|&step| {
             let onward = onward.get(step as usize).filter(|time| time.is_finite())?;
-            let length = self.rooms.length_to(p, t, step)?;
+            let [length, aside] = self.rooms.lengths_to(p, t, step)?;
             let until_through = self.leg(Some(step), length, (speed, true));
+            let from = self.rooms.length_from(step, goal);
+            let over = length + aside + from;
+            let excess = exact
+                .filter(|exact| exact.step == Some(step))
+                .map_or(0.0, |exact| (over - exact.length).max(0.0));
             Some(Outlook {
                 step: Some(step),
                 length,
                 ahead: self.ahead(step, length),
                 flow: self.flow(step),
                 until_through,
-                total: until_through + onward,
+                total: until_through + onward + (aside - excess) / speed + from * slower,
             })
         });
         direct.into_iter().chain(through).collect()
@@ -143,29 +153,34 @@ impl Simulation {
         };
         let (rooms, goal) = (times.rooms, usize::from(goal));
         let onward = times.onward(goal);
-        let (mut points, mut here) = (Vec::new(), p);
+        let (mut points, mut here, mut back) = (Vec::new(), p, None);
         for _ in 0..=rooms.steps() {
-            let Some(t) = rooms
-                .floor
-                .locate(here)
-                .or_else(|| rooms.floor.nearest(here))
-            else {
+            let at = rooms.floor.locate(here);
+            let Some(t) = at.or_else(|| rooms.floor.nearest(here)) else {
                 break;
             };
-            let all = times.outlooks((here, t), goal, &onward, scene.preferred_speed);
+            let shortest = ways.shortest((here, t), goal as u16);
+            let usual = (scene.preferred_speed, shortest);
+            let mut all = times.outlooks((here, t), goal, &onward, usual);
+            all.retain(|outlook| outlook.step.is_none() || outlook.step != back);
             let Some(best) = all.into_iter().min_by(|a, b| a.total.total_cmp(&b.total)) else {
                 break;
             };
-            let shortest = ways.course(here, to);
-            if rooms.first_on(here, t, &shortest) == best.step && best.step.is_none() {
-                points.extend(shortest);
-                break;
+            // As agents do: the shortest way as long as it leads through the chosen opening.
+            let mut course = ways.course(here, to);
+            let crossing = rooms.first_crossing(here, t, &course);
+            if crossing.map(|crossing| crossing.step) != best.step {
+                course = rooms.course((here, t), goal, best.step);
+            } else if let Some(crossing) = crossing {
+                course.truncate(crossing.after);
+                course.push(crossing.at);
             }
-            points.extend(rooms.course((here, t), goal, best.step));
+            points.extend(course);
             let Some((step, &end)) = best.step.zip(points.last()) else {
                 break;
             };
             here = end + rooms.ahead(step) * BEYOND;
+            back = Some(step ^ 1);
         }
         points
     }
@@ -199,7 +214,13 @@ impl Crowd {
     }
 
     /// The ways out of the room of agent `i`, in triangle `t`, that lead to a goal.
-    pub(super) fn outlooks_of(&self, scene: &Scene, i: usize, goal: u16, t: u32) -> Vec<Outlook> {
+    pub(super) fn outlooks_of(
+        &self,
+        scene: &Scene,
+        i: usize,
+        (goal, t): (u16, u32),
+        shortest: Option<Shortest>,
+    ) -> Vec<Outlook> {
         let goal = usize::from(goal);
         let onward = self.progress.onward.get(goal);
         let (Some(times), Some(onward)) = (self.times(scene), onward) else {
@@ -207,7 +228,8 @@ impl Crowd {
         };
         let own = self.agents.preferred_speed.get(i).copied();
         let speed = own.unwrap_or(scene.preferred_speed);
-        times.outlooks((self.agents.position[i], t), goal, onward, speed)
+        let at = (self.agents.position[i], t);
+        times.outlooks(at, goal, onward, (speed, shortest))
     }
 
     /// The time that agent `i` expects for the way to a goal, seconds; `None` if it is not known.
@@ -218,7 +240,10 @@ impl Crowd {
         let before = plan.map(|plan| plan.triangle);
         let here =
             before.map_or_else(|| rooms.floor.locate(p), |t| rooms.floor.locate_from(t, p))?;
-        let all = self.outlooks_of(scene, i, goal, here).into_iter();
+        let shortest = scene.ways.as_ref()?.shortest((p, here), goal);
+        let all = self
+            .outlooks_of(scene, i, (goal, here), shortest)
+            .into_iter();
         all.map(|outlook| outlook.total).reduce(f64::min)
     }
 }

@@ -1,6 +1,18 @@
 //! Where ways cross openings.
 
+use super::Step;
 use crate::engine::math::{Vector, direction};
+
+/// Where a way crosses an opening.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// The step that it takes there.
+    pub step: Step,
+    /// The number of points of the way before.
+    pub after: usize,
+    /// Where, meters.
+    pub at: Vector,
+}
 
 /// The points of a way from `p`, whose corners are moved off their walls: openings end at corners, and walls go on
 /// behind them.

@@ -25,7 +25,8 @@ pub struct Plan {
     pub toward: Option<Step>,
     /// The last step that it has taken.
     pub crossed: Option<Step>,
-    /// Whether the shortest way leads elsewhere.
+    /// Whether it walks to the opening, or to the goal in the room, not by the shortest way: that leads elsewhere, or a
+    /// crowd stands before the opening.
     pub detours: bool,
     /// The frame in which it compares ways again.
     pub decides_at: u64,

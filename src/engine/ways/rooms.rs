@@ -11,8 +11,8 @@ use std::collections::BinaryHeap;
 use rayon::prelude::*;
 
 use super::WayError;
-use super::course::points;
-use super::crossing::{beside_corners, crossing};
+use super::course::{end, points};
+use super::crossing::{Crossing, beside_corners, crossing};
 use super::cuts::{Cuts, Door, parts};
 use super::floor::Floor;
 use super::goal::Goal;
@@ -34,7 +34,7 @@ pub struct Rooms {
     openings: Vec<Opening>,
     /// The steps out of each room.
     out: Vec<Vec<Step>>,
-    /// For each step, the steps that can come before it in its room, with the length of the way from the middle of
+    /// For each step, the steps that can come before it in its room, with the length of the way between the middles of
     /// their openings, meters.
     before: Vec<Vec<(Step, f64)>>,
     /// The ways to each goal inside the rooms from which they cross no opening, in the order of the path maps of the
@@ -128,9 +128,8 @@ impl Rooms {
         let steps = self.steps_out(self.room(t)).iter();
         let through = steps.filter_map(|&step| {
             let onward = self.lengths[goal][step as usize];
-            onward
-                .is_finite()
-                .then_some(self.length_to(p, t, step)? + onward)
+            let [length, aside] = self.lengths_to(p, t, step)?;
+            onward.is_finite().then_some(length + aside + onward)
         });
         direct
             .into_iter()
@@ -147,6 +146,11 @@ impl Rooms {
     /// Whether some doors can be passed in one direction only.
     pub fn has_one_way(&self) -> bool {
         (0..self.steps()).any(|step| !self.is_passable(step))
+    }
+
+    /// The length of the shortest way from a step to a goal, meters, measured over the middles of openings.
+    pub fn length_from(&self, step: Step, goal: usize) -> f64 {
+        self.lengths[goal][step as usize]
     }
 
     /// The number of steps.
@@ -227,6 +231,16 @@ impl Rooms {
         Some(self.map(step).way(&self.floor, p, t, None)?.length)
     }
 
+    /// As [`length_to`](Self::length_to), and the distance from where that way ends to the middle of the opening,
+    /// meters.
+    pub fn lengths_to(&self, p: Vector, t: u32, step: Step) -> Option<[f64; 2]> {
+        let map = self.map(step);
+        let way = map.way(&self.floor, p, t, None)?;
+        let aside = |end: Vector| (end - self.opening(step).middle()).norm();
+        let aside = end(&self.floor, map, way.next).map_or(0.0, aside);
+        Some([way.length, aside])
+    }
+
     /// The length of the way from `p` in triangle `t` to a goal, if it crosses no opening, meters.
     pub fn length_to_goal(&self, p: Vector, t: u32, goal: usize) -> Option<f64> {
         Some(self.goals[goal].way(&self.floor, p, t, None)?.length)
@@ -255,18 +269,24 @@ impl Rooms {
     /// The first of the steps out of the room of triangle `t` that a way over `points` from `p` takes; `None` if it
     /// stays there.
     pub fn first_on(&self, p: Vector, t: u32, points: &[Vector]) -> Option<Step> {
+        Some(self.first_crossing(p, t, points)?.step)
+    }
+
+    /// Where a way over `points` from `p` first leaves the room of triangle `t`; `None` if it stays there.
+    pub fn first_crossing(&self, p: Vector, t: u32, points: &[Vector]) -> Option<Crossing> {
         let steps = self.steps_out(self.room(t));
         let points = beside_corners(p, points);
-        let crossed = points.windows(2).find_map(|pair| {
+        points.windows(2).enumerate().find_map(|(after, pair)| {
             let part = |step: Step| {
                 let pieces = self.opening(step).pieces.iter();
                 let crossed = pieces.filter_map(|&piece| crossing(piece, [pair[0], pair[1]]));
                 Some((crossed.reduce(f64::min)?, step))
             };
             let crossed = steps.iter().filter_map(|&step| part(step));
-            crossed.min_by(|a, b| a.0.total_cmp(&b.0))
-        });
-        crossed.map(|(_, step)| step)
+            let (part, step) = crossed.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            let at = pair[0] + part * (pair[1] - pair[0]);
+            Some(Crossing { step, after, at })
+        })
     }
 
     /// For each step, the least time from its opening to a goal, seconds; infinite without a way. `leg` gives the time
@@ -317,7 +337,12 @@ impl Rooms {
         let room = self.source(step);
         let all = (0..self.steps()).filter(|&s| self.is_passable(s) && self.is_passable(step));
         let all = all.filter(|&s| self.target(s) == room && s / 2 != step / 2);
-        let lengths = all.filter_map(|s| Some((s, self.length_after(s, self.map(step))?)));
+        let lengths = all.filter_map(|s| {
+            let from = self.opening(s);
+            let [length, aside] =
+                self.lengths_to(from.middle(), from.beside[s as usize % 2], step)?;
+            Some((s, length + aside))
+        });
         lengths.collect()
     }
 

@@ -233,7 +233,7 @@ impl Ways {
         map.map(|map| (self.places + map) as u16)
     }
 
-    fn from(&self, map: u16, p: Vector) -> Option<Way> {
+    pub(super) fn from(&self, map: u16, p: Vector) -> Option<Way> {
         self.maps[usize::from(map)].way_from(&self.floor, p)
     }
 

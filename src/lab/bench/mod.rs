@@ -7,6 +7,7 @@
 
 mod crowd;
 mod hall;
+mod office;
 mod plan;
 mod report;
 mod scaling;

@@ -9,6 +9,7 @@ use serde_json::json;
 
 use super::crowd::Crowd;
 use super::hall;
+use super::office;
 use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::timing::{failed, ms_of, ms_per_frame, warmed};
@@ -24,8 +25,8 @@ use crate::scenario::{Scenario, Setting, built_in, floor_plan};
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "stages",
-    about: "time per stage of a frame, of shipped scenarios, dense crowds that avoid, and a dense hall with walking \
-            laws",
+    about: "time per stage of a frame, of shipped scenarios, dense crowds that avoid, a dense hall with walking laws, \
+            and an office floor with ways by time",
     run,
 };
 
@@ -154,6 +155,19 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         };
         rows.push(measure(started, plan)?);
     }
+    let corridors = plan.choose(10, 1);
+    let leaving = plan.choose(250, 5);
+    for choice in ["shortest", "quickest"] {
+        say(&format!("office floor, {choice} ways"));
+        let started = Started {
+            name: "office floor",
+            profile: format!("walk+sph, {choice}"),
+            simulation: office::settled(corridors, leaving, choice)?,
+            measurements: Vec::new(),
+            frames: leaving,
+        };
+        rows.push(measure(started, plan)?);
+    }
     let stretches = busiest(plan).iter().map(|&(name, from, lasting)| {
         let (from, lasting) = plan.choose((from, lasting), QUICK_STRETCH);
         format!("{name} {from}–{} s", from + lasting)
@@ -169,11 +183,16 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
             "Stages are medians, in ms per frame; every repeat takes the same frames. Scenarios as shipped: \
              {stretches}. Streams: {agents} agents from {from:.1} to {:.1} s, half of them walking to the right and \
              half to the left. Hall: {} pillars stand between the agents, at 4.7 P/m², and their goal; from {from:.1} \
-             to {:.1} s, without and with a walking law. Measuring: the scenario's measurements and the search for \
+             to {:.1} s, without and with a walking law. Office floor: {} people leave {} rooms from {:.1} to {:.1} s, \
+             by the shortest or by the quickest ways. Measuring: the scenario's measurements and the search for \
              agents that stand, as in every run; it is not part of the frame. – : a stage that never runs.",
             until(streaming),
             bays[0] * bays[1],
-            until(walking)
+            until(walking),
+            1000 * corridors,
+            20 * corridors,
+            PAPER_TIME_STEP * leaving as f64,
+            PAPER_TIME_STEP * 2.0 * leaving as f64,
         )],
     })
 }

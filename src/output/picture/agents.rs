@@ -1,6 +1,6 @@
 //! The marks of agents and their paths, and the legend.
 
-use super::paths::BORDER;
+use super::paths::{BORDER, LEAST_WAIT, waited};
 use super::{Coloring, Field, Frame, Picture, xy};
 use crate::engine::journeys::Status;
 use crate::engine::simulation::Simulation;
@@ -164,15 +164,24 @@ pub fn legend(picture: &Picture, has_paths: bool) -> Vec<Entry> {
         look,
     };
     if has_paths {
-        return vec![
+        let by_time = picture.scene.by_time() && picture.scene.rooms().is_some();
+        let way = if by_time {
+            "quickest way now"
+        } else {
+            "shortest way"
+        };
+        let waits = format!("people wait {LEAST_WAIT} s or more");
+        let waits = entry(&waits, Look::Line(waited(LEAST_WAIT)));
+        let shown = [
             entry("agent", Look::Agent(FAINT)),
-            entry("shortest way", Look::Line(Style::full(BLACK, 0.9, ""))),
+            entry(way, Look::Line(Style::full(BLACK, 0.9, ""))),
             entry(
                 "border of the same next corner",
                 Look::Line(Style::full(BORDER, 0.6, "")),
             ),
             entry("corner", Look::Dot(BORDER)),
         ];
+        return shown.into_iter().chain(by_time.then_some(waits)).collect();
     }
     let path = picture.trails.map(|trails| {
         let text = format!("path of the last {} s", trails.secs);

@@ -21,7 +21,7 @@ const CANDIDATES: usize = 2000;
 /// The distance between arrows, points.
 const ARROWS: f64 = 34.0;
 /// Shorter waits before openings are not shown, seconds.
-const LEAST_WAIT: f64 = 5.0;
+pub const LEAST_WAIT: f64 = 5.0;
 /// The color of arrows.
 const ARROW: Rgb = [90, 110, 120];
 
@@ -76,8 +76,8 @@ impl Paths {
         let corners = Mark::dots(corners.map(xy), Style::full(BORDER, 1.7, ""));
         let mut lines = self.arrows(frame);
         let starts = self.starts(simulation);
-        let by_time = simulation.scene().rooms().is_some() && self.is_known;
-        let course = |start: Vector| match by_time {
+        let has_rooms = simulation.scene().rooms().is_some() && self.is_known;
+        let course = |start: Vector| match has_rooms {
             true => simulation.course(start, self.to),
             false => self.ways.course(start, self.to),
         };
@@ -85,9 +85,12 @@ impl Paths {
         lines.extend(drawn.flat_map(|&start| way(start, course(start), frame)));
         lines.push(corners);
         lines.extend(waits(simulation));
-        let by = if by_time { " by time" } else { "" };
+        let by = match has_rooms && simulation.scene().by_time() {
+            true => " by time",
+            false => "",
+        };
         Drawn {
-            title: format!("Ways to {}{by}", self.name),
+            title: format!("Ways{by} to {}", self.name),
             field: vec![cells(field.lengths, map.clone()), borders],
             lines,
             bar: bar(&map),
@@ -154,6 +157,11 @@ fn way(start: Vector, course: Vec<Vector>, frame: &Frame) -> Vec<Mark> {
     [line, start].into_iter().chain(head).collect()
 }
 
+/// The line of an opening before which agents wait for so long, seconds.
+pub fn waited(secs: f64) -> Style {
+    Style::full(WAIT.color(secs as f32), 2.6, "")
+}
+
 /// The openings before which agents wait for a while, in the colors of recordings.
 fn waits(simulation: &Simulation) -> Vec<Mark> {
     let openings = simulation
@@ -163,7 +171,7 @@ fn waits(simulation: &Simulation) -> Vec<Mark> {
     let waits = openings.iter().zip(simulation.waits());
     let long = waits.filter(|(_, wait)| *wait >= LEAST_WAIT);
     let marks = long.flat_map(|(opening, wait)| {
-        let style = Style::full(WAIT.color(wait as f32), 2.6, "");
+        let style = waited(wait);
         let pieces = opening.pieces().iter();
         pieces.map(move |ends| Mark::line(ends.map(xy), style.clone()))
     });

@@ -25,6 +25,9 @@ const AT_EXIT: f64 = 0.1;
 /// Crowds do not run faster, m/s.
 const FAST: f64 = 4.0;
 
+/// From this number of agents on, a note says how they choose their ways.
+const CROWD: u64 = 100;
+
 /// The notes on a complete scene that at most `entering` agents enter.
 pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
     if entering == 0 {
@@ -41,7 +44,27 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
         .chain(at_exits(scene))
         .chain(unused(scene))
         .chain(unheeded(keys, scene))
+        .chain(crowded(keys, scene, entering))
         .collect()
+}
+
+/// A note on crowds on a floor plan with several ways, whose agents take the shortest one because the file does not say
+/// how they choose.
+fn crowded(keys: &File, scene: &Scene, entering: u64) -> Option<String> {
+    let is_open = keys.walkable_area.is_some() && keys.route_choice.is_none();
+    let rings = scene.walls.obstacles().iter().flat_map(|one| one.rings());
+    let exits = scene.groups.iter().any(|group| {
+        let to = group
+            .journey
+            .map(|k| &scene.journeys.journeys[usize::from(k)]);
+        to.is_some_and(|to| to.name == TO_EXIT[0] && to.stages[0].places.len() > 1)
+    });
+    let has_choice = scene.ways.is_some() && (rings.count() > 1 || exits);
+    (is_open && has_choice && entering >= CROWD).then(|| {
+        "all agents take the shortest way, however many wait there; with `route_choice` `quickest` they take the way \
+         of the least time (`shortest` in the file hides this note)"
+            .to_owned()
+    })
 }
 
 /// Notes on motivations that no walking law reads, and on zones that change nothing. The motivation of the whole

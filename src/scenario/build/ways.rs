@@ -15,14 +15,11 @@ use crate::scenario::build::doors;
 use crate::scenario::build::origin::{Member, Origins};
 use crate::scenario::error::Problem;
 use crate::scenario::error::quote::shown;
-use crate::scenario::file::File;
 use crate::scenario::floor_plan::{Rings, free, outlines};
 use crate::scenario::keys::goals::WayFinding;
 
 /// The floor of a scene without walkable area reaches this far beyond everything in it, meters.
 const MARGIN: f64 = 5.0;
-/// From this number of agents on, a note says how they choose their ways.
-const CROWD: usize = 300;
 /// The most goals with a path map.
 const MOST_GOALS: usize = 1000;
 
@@ -116,20 +113,8 @@ pub fn ways(
     notes.extend(doors::notes(places, &ways.floor, behind));
     prepared.check_bodies(&ways.floor, notes)?;
     // Where nothing can stand between a place of the floor and a goal, agents walk straight.
-    notes.extend(crowded(keys, scene));
     let is_needed = has_journeys || !keys.doors.is_empty() || ways.bend();
     Ok(is_needed.then(|| Arc::new(ways)))
-}
-
-/// A note on large crowds on a floor plan whose agents take the shortest way because the file does not say how they
-/// choose.
-fn crowded(keys: &File, scene: &Scene) -> Option<String> {
-    let is_plan = keys.walkable_area.is_some() && keys.route_choice.is_none();
-    (is_plan && scene.agents.len() >= CROWD).then(|| {
-        "all agents take the shortest way, however many wait there; with `route_choice` `quickest` they take the way \
-         of the least time (`shortest` in the file hides this note)"
-            .to_owned()
-    })
 }
 
 /// The floor of a scene that has no path maps, for goals that agents get later; `width`: the least of passages.
