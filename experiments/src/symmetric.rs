@@ -1,9 +1,9 @@
-//! Sums over pairs that visit each pair once: the densities of a dense crowd (Eq. 9), in the way of the engine, and with
-//! each pair added to both of its agents.
+//! Sums over pairs that visit each pair once: the densities of a dense crowd (Eq. 9), in the way of the engine, and
+//! with each pair added to both of its agents.
 //!
-//! The engine adds every agent j of a list to the eight agents of its cluster, so each pair is visited twice, and no sum
-//! writes to another agent. Here a cluster only visits agents that come after it, and adds what they receive from it
-//! to them: the sum over its eight lanes. This is one thread; with more, agents of two threads would receive from
+//! The engine adds every agent j of a list to the eight agents of its cluster, so each pair is visited twice, and no
+//! sum writes to another agent. Here a cluster only visits agents that come after it, and adds what they receive from
+//! it to them: the sum over its eight lanes. This is one thread; with more, agents of two threads would receive from
 //! both, in an order that must not depend on them.
 
 use std::ops::Range;
