@@ -209,7 +209,9 @@ impl Crowd {
         let toward = plans.map(|(plan, &p)| {
             let plan = plan.as_ref()?;
             let step = plan.toward?;
-            let length = rooms.length_to(p, plan.triangle, step);
+            // It may have left its triangle since the last coarse frame.
+            let here = rooms.floor.locate_from(plan.triangle, p);
+            let length = rooms.length_to(p, here.unwrap_or(plan.triangle), step);
             Some((step, length.unwrap_or(0.0)))
         });
         let toward: Vec<Option<(Step, f64)>> = toward.collect();
