@@ -215,7 +215,15 @@ impl Neighbors {
     /// All agents within `radius` meters of `p`: candidates for avoidance. They include agents at `p`, and some out of
     /// range.
     pub fn around(&self, p: Vector, radius: f64) -> impl Iterator<Item = Run> + '_ {
-        self.grid.rows([p; 2], radius + self.ranges.margin)
+        self.grid.rows([p; 2], radius + self.displaced())
+    }
+
+    /// The distance that an agent may be from its position at the sort without being missed in the grid, meters.
+    fn displaced(&self) -> f64 {
+        match self.ranges.follow {
+            true => self.ranges.drift,
+            false => self.ranges.margin,
+        }
     }
 
     /// The place from which an agent at `p` sees the agents of a run: with a period, they may be seen across its ends.
@@ -233,7 +241,7 @@ impl Neighbors {
         found: &mut Vec<Run>,
     ) {
         found.clear();
-        let reach = radius + self.ranges.margin;
+        let reach = radius + self.displaced();
         if self.grid.height() <= self.reach {
             let corners = bounds(positions[agents].iter().copied()).unwrap_or_default();
             found.extend(self.grid.rows(corners, reach));
@@ -242,7 +250,7 @@ impl Neighbors {
         // Cells had to be made larger than the reach of the lists, so clusters have one agent: list only its
         // neighbors.
         for i in agents {
-            let reach = [radius, self.ranges.margin];
+            let reach = [radius, self.displaced()];
             self.grid.each_near(positions[i], positions, reach, found);
         }
     }
@@ -251,7 +259,7 @@ impl Neighbors {
     /// some that are near it.
     pub fn inside(&self, corners: [Vector; 2], positions: &[Vector], found: &mut Vec<Run>) {
         found.clear();
-        let margin = Vector::repeat(self.ranges.margin);
+        let margin = Vector::repeat(self.displaced());
         let moved = [corners[0] - margin, corners[1] + margin];
         self.grid.inside(moved, found);
         if self.grid.height() <= self.reach {
