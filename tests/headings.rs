@@ -299,6 +299,7 @@ fn motivation_and_density_shorten_the_gap_and_narrowings_lengthen_it() {
         hurry_share: Some(0.5),
         press_share: Some(0.4),
         press_density: Some(4.0),
+        press_range: Some(2.0),
         queue_share: Some(0.2),
         queue_density: Some(10.0),
         narrowing_share: Some(0.6),
@@ -309,7 +310,7 @@ fn motivation_and_density_shorten_the_gap_and_narrowings_lengthen_it() {
     assert_eq!(gap.factor(0.0, 0.0, None), 1.0);
     assert_eq!(gap.factor(1.0, 0.0, None), 0.5);
     assert!((gap.factor(0.0, 9.0, None) - 0.6).abs() < 1e-12);
-    assert!((gap.factor(0.0, 4.5, None) - 0.8).abs() < 1e-12);
+    assert!((gap.factor(0.0, 4.5, None) - 0.9).abs() < 1e-12);
     assert!((gap.factor(0.0, 10.5, None) - 0.6 * 1.1).abs() < 1e-12);
     assert!((gap.factor(0.0, 20.0, None) - 0.6 * 1.2).abs() < 1e-12);
     assert_eq!(gap.factor(1.0, 20.0, None), 0.5);

@@ -242,8 +242,8 @@ impl Profile {
             }
             (Some(law), Some(goal)) => {
                 let rate = goal.rate();
-                for i in agents.clone() {
-                    let lost = law.lost_velocity(frame, i);
+                let lost = law.lost_velocities(frame, agents.clone());
+                for (i, lost) in agents.clone().zip(lost) {
                     take(|t| &mut t.walking, i, lost * (rate / frame.agents.mass[i]));
                 }
             }

@@ -209,7 +209,7 @@ impl Crowd {
             let i = crossing.agent;
             let kind = &scene.journeys.places[crossing.place].kind;
             if matches!(kind, Kind::Door(_)) {
-                self.hold_back(before[i], crossing);
+                self.hold_back(scene, before[i], crossing);
                 continue;
             }
             let Kind::Exit(exit) = kind else {
@@ -220,7 +220,7 @@ impl Crowd {
             let now = self.clock.time();
             let state = &mut self.progress.places[crossing.place];
             if !state.open || now < state.ready {
-                self.hold_back(before[i], crossing);
+                self.hold_back(scene, before[i], crossing);
                 continue;
             }
             if let Some(rate) = exit.most_per_sec {
@@ -244,8 +244,8 @@ impl Crowd {
         }
     }
 
-    /// Stops an agent before a line.
-    fn hold_back(&mut self, from: Vector, crossing: &Crossing) {
+    /// Stops an agent before a line; it slides along the line, unless a wall or another line is in its way.
+    fn hold_back(&mut self, scene: &Scene, from: Vector, crossing: &Crossing) {
         let (position, velocity) = (
             &mut self.agents.position[crossing.agent],
             &mut self.agents.velocity[crossing.agent],
@@ -254,8 +254,18 @@ impl Crowd {
         let length = way.norm();
         let across = across(crossing.line, way);
         let kept = (crossing.part * length - STOP_BEFORE).max(0.0);
-        *position = from + direction(way) * kept;
-        *velocity -= across * velocity.dot(&across).max(0.0);
+        let stop = from + direction(way) * kept;
+        let rest = way * (1.0 - kept / length);
+        let end = stop + rest - across * rest.dot(&across);
+        let near = scene.walls.near_any(&[stop, end], 0.0);
+        let mut lines = scene.journeys.places.iter().filter_map(Place::line);
+        let is_free = scene.walls.first_crossing(stop, end, &near).is_none()
+            && lines.all(|line| crossed([stop, end], line).is_none());
+        *position = if is_free { end } else { stop };
+        *velocity = match is_free {
+            true => *velocity - across * velocity.dot(&across).max(0.0),
+            false => Vector::zeros(),
+        };
     }
 
     /// Agents leave; the bodies of those with a direction in which they crossed the line walk on.

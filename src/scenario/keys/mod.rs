@@ -11,6 +11,7 @@ pub mod limits;
 pub mod names;
 pub mod numerics;
 pub mod parameters;
+mod parts;
 pub mod people;
 pub mod periodic;
 pub mod places;

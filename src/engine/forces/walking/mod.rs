@@ -26,6 +26,7 @@ pub use headings::Headings;
 pub use headway::Headway;
 
 use std::f64::consts::FRAC_1_SQRT_2;
+use std::ops::Range;
 
 use headings::{COUNT, STRAIGHT};
 use walkers::{Motions, ROUNDING, View, Walkers};
@@ -213,18 +214,30 @@ impl WalkingLaw {
     /// The change of the preferred velocity of agent `i` that gives it the allowed speed along the heading that it
     /// follows, m/s.
     pub fn lost_velocity(&self, frame: &Frame, i: usize) -> Vector {
-        let wish = frame.fields.preferred_velocity[i];
-        let speed = wish.norm();
-        let allowed = frame.agents.allowed_speed.get(i).copied().flatten();
-        let allowed = allowed.filter(|&allowed| allowed < speed);
-        let law = self.headings();
-        match law.map(|law| (law, law.followed(frame, i))) {
-            Some((law, followed)) if followed != STRAIGHT => {
-                let share = allowed.map_or(1.0, |allowed| allowed / speed);
-                headings::rotated(wish, law.turned(followed)) * share - wish
+        let mut lost = self.lost_velocities(frame, i..i + 1);
+        lost.next().unwrap_or_default()
+    }
+
+    /// Those of several agents.
+    pub fn lost_velocities(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+    ) -> impl Iterator<Item = Vector> {
+        let law = self.headings().map(|law| (law, law.all_turned()));
+        agents.map(move |i| {
+            let wish = frame.fields.preferred_velocity[i];
+            let speed = wish.norm();
+            let allowed = frame.agents.allowed_speed.get(i).copied().flatten();
+            let allowed = allowed.filter(|&allowed| allowed < speed);
+            match law.as_ref().map(|(law, all)| (law.followed(frame, i), all)) {
+                Some((followed, all)) if followed != STRAIGHT => {
+                    let share = allowed.map_or(1.0, |allowed| allowed / speed);
+                    headings::rotated(wish, all[followed]) * share - wish
+                }
+                _ => allowed.map_or(Vector::zeros(), |allowed| wish * (allowed / speed - 1.0)),
             }
-            _ => allowed.map_or(Vector::zeros(), |allowed| wish * (allowed / speed - 1.0)),
-        }
+        })
     }
 }
 

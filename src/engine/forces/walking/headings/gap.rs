@@ -13,8 +13,10 @@ pub struct Gap {
     pub hurry_share: f64,
     /// `headings`: the share of T that calm agents in packed crowds do without.
     pub press_share: f64,
-    /// `headings`, P/m²: the density from which on they do so; they do so fully 1 P/m² above it.
+    /// `headings`, P/m²: the density from which on they do so.
     pub press_density: f64,
+    /// `headings`, P/m²: they do so fully this far above that density.
+    pub press_range: f64,
     /// `headings`: T of calm agents in a queue is longer by this share of it.
     pub queue_share: f64,
     /// `headings`, P/m²: the density from which on it is longer; it is so fully 1 P/m² above it.
@@ -31,6 +33,7 @@ impl Default for Gap {
             hurry_share: 0.0,
             press_share: 0.0,
             press_density: 4.5,
+            press_range: 1.0,
             queue_share: 0.0,
             queue_density: 1.5,
             narrowing_share: 0.0,
@@ -45,7 +48,8 @@ impl Gap {
     pub fn factor(&self, motivation: f64, density: f64, narrowing: Option<[f64; 2]>) -> f64 {
         let hurry = 1.0 - self.hurry_share * motivation;
         let calm = 1.0 - motivation;
-        let press = 1.0 - self.press_share * calm * (density - self.press_density).clamp(0.0, 1.0);
+        let pressed = (density - self.press_density) / self.press_range;
+        let press = 1.0 - self.press_share * calm * pressed.clamp(0.0, 1.0);
         let queue = 1.0 + self.queue_share * calm * (density - self.queue_density).clamp(0.0, 1.0);
         let narrow = narrowing.map_or(1.0, |[distance, counts]| {
             let near = distance / self.narrowing_range;
