@@ -231,3 +231,42 @@ fn no_way_leads_from_another_room_through_the_wall_behind_an_exit() {
     alone["crowds"].as_array_mut().unwrap().truncate(1);
     assert_eq!(after(&alone, &[], 60.0).outcome().arrivals.len(), 10);
 }
+
+#[test]
+fn people_before_a_closed_exit_move_as_fast_as_their_velocities_say_and_get_no_farther_than_it() {
+    let closed = json!({
+        "walkable_area": [[[[0, 0], [10, 0], [10, 10], [0, 10]]]],
+        "exits": [{"name": "door", "line": [[10, 4.4], [10, 5.6]], "closed_secs": [[0, 1000]]}],
+        "crowds": [{"area": [[4, 0.5], [9.5, 0.5], [9.5, 9.5], [4, 9.5]], "number": 90}]
+    });
+    for profile in ["profile=sph", "profile=steer+sph"] {
+        let mut simulation = after(&closed, &[profile], 15.0);
+        let step = simulation.frame().clock.time_step();
+        // By the numbers of the agents, which are those of the list here.
+        let places = |simulation: &Simulation| {
+            let agents = simulation.frame().agents;
+            let mut all = vec![(Vector::zeros(), 0.0); agents.len()];
+            for (i, &id) in agents.id.iter().enumerate() {
+                all[id as usize] = (agents.position[i], agents.velocity[i].norm() * step);
+            }
+            all
+        };
+        let mut before = places(&simulation);
+        let mut ways = vec![[0.0; 2]; before.len()];
+        for _ in 0..100 {
+            simulation.step().unwrap();
+            let now = places(&simulation);
+            for (way, (from, to)) in ways.iter_mut().zip(before.iter().zip(&now)) {
+                assert!(to.0.x <= 10.0, "{profile}: beyond the exit, at {:?}", to.0);
+                *way = [way[0] + (to.0 - from.0).norm(), way[1] + to.1];
+            }
+            before = now;
+        }
+        for [walked, expected] in ways {
+            assert!(
+                expected < walked + 0.1,
+                "{profile}: {walked} of {expected} m"
+            );
+        }
+    }
+}

@@ -116,7 +116,7 @@ fn profiles_of_a_blend_share_the_law_that_looks_ahead() {
     let error = made(vec![headway(), step(2.0, &other)]).unwrap_err();
     assert!(error.to_string().contains("one walking law"), "{error}");
     let blend = made(vec![step(0.0, &Parameters::default()), headway(), drag]).unwrap();
-    assert_eq!(blend.walking_law(), headway().profile.walking);
+    assert_eq!(blend.walking_law().copied(), headway().profile.walking);
 }
 
 #[test]

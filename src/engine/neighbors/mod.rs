@@ -100,6 +100,8 @@ pub struct Neighbors {
     far_walls: Lists,
     /// The walls around each cell of the floor, for both.
     wall_cells: [WallCells; 2],
+    /// The walls around each cell that walking laws see.
+    seen_walls: WallCells,
     /// The agents' positions at the last sort, meters.
     sorted_at: Vec<Vector>,
     /// The greatest distance of any agent from its position at the last sort, meters.
@@ -141,7 +143,8 @@ impl Neighbors {
         self.near.rebuild(&self.grid, &self.sorted_at, self.reach);
     }
 
-    /// Lists the walls near each agent: near walls for SPH, contact and stopping moves, far walls for avoidance.
+    /// Lists the walls near each agent: near walls for SPH, contact and stopping moves, far walls for avoidance. Walking
+    /// laws look at walls too rarely for lists.
     pub fn list_walls(&mut self, agents: &Agents, walls: &Walls) {
         let margin = self.ranges.drift;
         let least = self.ranges.support.max(self.ranges.longest_step);
@@ -150,8 +153,10 @@ impl Neighbors {
         list_walls(&mut self.near_walls, near, bodies, walls, |radius| {
             least.max(radius) + margin
         });
-        let radii = self.ranges.avoidance.into_iter().chain(self.ranges.sight);
-        match radii.reduce(f64::max) {
+        if let Some(sight) = self.ranges.sight {
+            self.seen_walls.reach_to(walls, sight + self.widest);
+        }
+        match self.ranges.avoidance {
             Some(radius) => {
                 list_walls(&mut self.far_walls, far, bodies, walls, |_| radius + margin);
             }
@@ -312,6 +317,16 @@ impl Neighbors {
     /// Walls that may be within reach of agent `i` for avoidance, in ascending order.
     pub fn far_walls(&self, i: usize) -> &[u32] {
         self.far_walls.of(i)
+    }
+
+    /// Walls that agents at `p` may see by their walking laws, in ascending order.
+    pub fn seen_walls(&self, walls: &Walls, p: Vector) -> &[u32] {
+        self.seen_walls.around(walls, p)
+    }
+
+    /// The radius within which walking laws see walls, meters.
+    pub fn sight(&self) -> f64 {
+        self.ranges.sight.unwrap_or_default()
     }
 }
 

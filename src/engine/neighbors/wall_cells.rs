@@ -27,7 +27,7 @@ pub struct WallCells {
 impl WallCells {
     /// Prepares to find the walls up to `reach` meters away.
     pub fn reach_to(&mut self, walls: &Walls, reach: f64) {
-        if reach <= self.reach {
+        if reach <= self.reach || walls.is_empty() {
             return;
         }
         let ends = (0..walls.len() as u32).map(|k| walls.wall(k));

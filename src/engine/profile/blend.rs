@@ -143,15 +143,15 @@ impl Blend {
     }
 
     /// The walking law of the profiles that have one that looks ahead.
-    pub fn walking_law(&self) -> Option<WalkingLaw> {
-        let mut laws = self.steps.iter().filter_map(|step| step.profile.walking);
-        laws.find(WalkingLaw::looks_ahead)
+    pub fn walking_law(&self) -> Option<&WalkingLaw> {
+        let mut laws = (self.steps.iter()).filter_map(|step| step.profile.walking.as_ref());
+        laws.find(|law| law.looks_ahead())
     }
 
     /// The walking law that changes the preferred velocity of RVO.
-    pub fn law_of_rvo(&self) -> Option<WalkingLaw> {
+    pub fn law_of_rvo(&self) -> Option<&WalkingLaw> {
         let mut with_rvo = (self.steps.iter()).filter(|step| rvo_of(&step.profile).is_some());
-        with_rvo.find_map(|step| step.profile.walking.filter(WalkingLaw::looks_ahead))
+        with_rvo.find_map(|step| (step.profile.walking.as_ref()).filter(|law| law.looks_ahead()))
     }
 
     /// The profiles that act on agent `i` of a frozen frame, with their weights, which sum to 1.

@@ -281,7 +281,7 @@ impl Fixed {
         for (k, allowed) in allowed.iter().enumerate() {
             let i = b * BLOCK + k;
             let own = self.blend(frame.agents, i).walking_law();
-            is_due[k] = allowed.is_none() && own == Some(*law);
+            is_due[k] = allowed.is_none() && own == Some(law);
             if is_due[k]
                 && let Some(law) = law.headings()
             {

@@ -43,9 +43,11 @@ impl Fixed {
         let far = (law.gap.reach()).min((aim - p).norm() + BEYOND);
         let next = self.narrowings.next(p, heading, far)?;
         let side = perpendicular(heading);
+        let seen = frame.neighbors.seen_walls(frame.walls, p).iter();
+        let walls = seen.map(|&k| frame.walls.wall(k));
+        let walls = walls.filter(|wall| !wall.is_beyond(p, frame.neighbors.sight()));
         let free = |side: Vector| {
-            let walls = frame.neighbors.far_walls(i).iter();
-            let before = walls.map(|&k| before_wall(frame.walls.wall(k), p, 0.0, side));
+            let before = walls.clone().map(|wall| before_wall(wall, p, 0.0, side));
             before.fold(f64::INFINITY, f64::min)
         };
         let here = free(side) + free(-side);

@@ -1,6 +1,6 @@
 //! Narrowings: places where the floor is narrower than before and behind, such as doors and gaps.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use super::mesh::Mesh;
@@ -16,7 +16,7 @@ pub struct Narrowings {
     /// Their ends, meters.
     places: Vec<[Vector; 2]>,
     /// For each cell, the numbers of the places that may lie in it.
-    cells: HashMap<[i32; 2], Vec<u32>>,
+    cells: BTreeMap<[i32; 2], Vec<u32>>,
 }
 
 /// A narrowing that an agent walks to.
@@ -40,7 +40,7 @@ impl Narrowings {
             [mesh.point(passage.from), to]
         };
         let places: Vec<_> = narrow(mesh, widest).into_iter().map(ends).collect();
-        let mut cells: HashMap<_, Vec<u32>> = HashMap::new();
+        let mut cells: BTreeMap<_, Vec<u32>> = BTreeMap::new();
         for (k, &place) in places.iter().enumerate() {
             for cell in cells_of(place) {
                 cells.entry(cell).or_default().push(k as u32);

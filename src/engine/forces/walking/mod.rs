@@ -229,13 +229,14 @@ impl WalkingLaw {
             let wish = frame.fields.preferred_velocity[i];
             let speed = wish.norm();
             let allowed = frame.agents.allowed_speed.get(i).copied().flatten();
-            let allowed = allowed.filter(|&allowed| allowed < speed);
-            match law.as_ref().map(|(law, all)| (law.followed(frame, i), all)) {
-                Some((followed, all)) if followed != STRAIGHT => {
-                    let share = allowed.map_or(1.0, |allowed| allowed / speed);
-                    headings::rotated(wish, all[followed]) * share - wish
+            // Without branches: what agents decide is hard to predict.
+            let allowed = allowed.unwrap_or(f64::INFINITY).min(speed);
+            let share = allowed / speed.max(f64::MIN_POSITIVE);
+            match &law {
+                Some((law, all)) => {
+                    headings::rotated(wish, all[law.followed(frame, i)]) * share - wish
                 }
-                _ => allowed.map_or(Vector::zeros(), |allowed| wish * (allowed / speed - 1.0)),
+                None => wish * (share - 1.0),
             }
         })
     }

@@ -112,12 +112,12 @@ impl Headings {
         (gap, turned): (f64, &[Vector; COUNT]),
         rooms: &mut [f64; COUNT],
     ) {
-        let near = frame.neighbors.far_walls(i);
+        let (p, radius) = (frame.agents.position[i], frame.agents.radius[i]);
+        let near = frame.neighbors.seen_walls(frame.walls, p);
         if near.is_empty() {
             return;
         }
         let wish = frame.fields.preferred_velocity[i];
-        let (p, radius) = (frame.agents.position[i], frame.agents.radius[i]);
         let far = self.sight(wish.norm(), gap);
         let per_time = 1.0 / (self.headway.headway_time * gap);
         let way = direction(wish);

@@ -46,7 +46,7 @@ pub fn nearest_wall(
 ) -> (f64, Option<u32>) {
     let p = frame.agents.position[i];
     let mut least = (far, None);
-    for &k in frame.neighbors.far_walls(i) {
+    for &k in frame.neighbors.seen_walls(frame.walls, p) {
         let wall = frame.walls.wall(k);
         if wall.is_beyond(p, far + radius) {
             continue;
