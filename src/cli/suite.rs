@@ -52,7 +52,7 @@ pub struct SuiteOptions {
     #[arg(long, value_name = "PROFILE", value_parser = PossibleValuesParser::new(catalog::names()))]
     pub profile: Vec<String>,
     /// Number of seeds per run: 1, 2, …; verify: a case passes if it does with all of them; validate: means over seeds
-    /// [default: the suite's; 1 of the cases below]
+    /// [default: the suite's; of the cases below 3 of validate and 1 of verify]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub seeds: Option<u64>,
     #[command(flatten)]

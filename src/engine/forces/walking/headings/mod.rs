@@ -38,7 +38,7 @@ use crate::engine::math::{Vector, unit_vector};
 pub const COUNT: usize = 7;
 
 /// The time between two choices, seconds, to the nearest number of coarse steps.
-pub const CHOICE_TIME: f64 = 0.4;
+pub const CHOICE_TIME: f64 = 0.2;
 
 /// The heading straight along the way.
 pub const STRAIGHT: usize = COUNT / 2;
