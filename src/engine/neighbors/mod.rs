@@ -143,8 +143,8 @@ impl Neighbors {
         self.near.rebuild(&self.grid, &self.sorted_at, self.reach);
     }
 
-    /// Lists the walls near each agent: near walls for SPH, contact and stopping moves, far walls for avoidance. Walking
-    /// laws look at walls too rarely for lists.
+    /// Lists the walls near each agent: near walls for SPH, contact and stopping moves, far walls for avoidance.
+    /// Walking laws look at walls too rarely for lists.
     pub fn list_walls(&mut self, agents: &Agents, walls: &Walls) {
         let margin = self.ranges.drift;
         let least = self.ranges.support.max(self.ranges.longest_step);
