@@ -37,6 +37,30 @@ fn an_ordinary_room_gets_no_note() {
 }
 
 #[test]
+fn doors_that_never_open_get_a_note() {
+    let with_door = |closed: Value| {
+        let mut room = room();
+        let closed = json!({"name": "gate", "line": [[6, 0], [6, 10]], "closed_secs": closed});
+        (room["doors"], room["route_choice"]) = (json!([closed]), json!("quickest"));
+        room
+    };
+    for closed in [json!([[0, 120]]), json!([[0, 50], [30, 500]])] {
+        let said = notes(&with_door(closed.clone()));
+        let never = said
+            .iter()
+            .any(|note| note.starts_with("doors[0]: `gate` is closed"));
+        assert_eq!(never, closed[0][1] == 120, "{closed}: {said:?}");
+    }
+    for closed in [json!([]), json!([[0, 119]]), json!([[1, 500]])] {
+        assert_eq!(notes(&with_door(closed)), [""; 0]);
+    }
+    let mut opened = with_door(json!([[0, 500]]));
+    assert!(note(&opened).contains("wait before it"));
+    opened["events"] = json!([{"at_secs": 40, "open": "gate"}]);
+    assert_eq!(notes(&opened), [""; 0]);
+}
+
+#[test]
 fn crowds_with_several_ways_are_told_how_they_choose() {
     let mut crowded = room();
     crowded["crowds"][0]["number"] = json!(120);

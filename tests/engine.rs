@@ -96,3 +96,4 @@ mod way_finding;
 mod way_oracles;
 mod way_reach;
 mod ways;
+mod ways_by_time;

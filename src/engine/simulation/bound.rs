@@ -15,9 +15,12 @@ const OBSERVED: f64 = 15.0;
 const EXPECTED: f64 = 5.0;
 /// The least flow that agents expect, P/(m s): about what Weidmann (1993) gives.
 pub(super) const FLOW_PER_METER: f64 = 1.3;
-/// If this many times as many agents stand within [`BEFORE`] meters of a line as walk there at [`FLOW_PER_METER`], and
-/// one more, a crowd stands before it, and its flow is its capacity.
+/// That through openings: about what Seyfried et al. (2009) measured at bottlenecks.
+pub(super) const FLOW_PER_METER_OF_OPENINGS: f64 = 1.9;
+/// If this many times as many agents stand within [`BEFORE`] meters of a place or of an opening as walk there at
+/// [`FLOW_PER_METER`], and one more, a crowd stands before it, and its flow is its capacity.
 const CROWD: f64 = 2.0;
+const CROWD_AT_OPENING: f64 = 1.0;
 /// The area before a line ends at this distance, meters.
 pub(super) const BEFORE: f64 = 2.0;
 /// The least flow that agents expect from observation, P/s.
@@ -136,18 +139,28 @@ pub(super) fn count(crowd: &mut Crowd, scene: &Scene) {
     crowd.progress.per_meter = per_meter;
     let speed = scene.preferred_speed.max(f64::MIN_POSITIVE);
     let crowd_before =
-        |width: f64, before: f64| 1.0 + CROWD * FLOW_PER_METER * width * before / speed;
+        |width: f64, before: f64, crowd: f64| 1.0 + crowd * FLOW_PER_METER * width * before / speed;
     let places = scene.journeys.places.iter();
     for (place, state) in places.zip(&mut crowd.progress.places) {
         let width = width(place).unwrap_or(0.0);
-        state.stream.observe(crowd_before(width, BEFORE));
+        state.stream.observe(crowd_before(width, BEFORE, CROWD));
     }
     if let Some(rooms) = scene.rooms() {
         for (step, stream) in (0..).zip(&mut crowd.progress.steps) {
             let before = rooms.depth(step).min(BEFORE);
-            stream.observe(crowd_before(rooms.opening(step).width(), before));
+            let width = rooms.opening(step).width();
+            stream.observe(crowd_before(width, before, CROWD_AT_OPENING));
         }
     }
+}
+
+/// The lengths of the ways of agents to each of `count` lines, meters, from the line of each agent and its length.
+fn lengths_of(agents: Vec<Option<(usize, f64)>>, count: usize) -> Vec<Vec<f64>> {
+    let mut lengths = vec![Vec::new(); count];
+    for (line, length) in agents.into_iter().flatten() {
+        lengths[line].push(length);
+    }
+    lengths
 }
 
 impl Crowd {
@@ -177,13 +190,11 @@ impl Crowd {
 
     fn count_places(&mut self, scene: &Scene) {
         let agents = &self.agents;
-        let mut lengths = vec![Vec::new(); self.progress.places.len()];
-        for (i, (trip, route)) in agents.trip.iter().zip(&agents.route).enumerate() {
-            let (Some(trip), Some(route)) = (trip, route) else {
-                continue;
-            };
+        let trips = agents.trip.par_iter().zip(&agents.route).enumerate();
+        let bound = trips.map(|(i, (trip, route))| {
+            let (trip, route) = (trip.as_ref()?, route.as_ref()?);
             if !matches!(trip.status, Status::Walking | Status::Queued { .. }) {
-                continue;
+                return None;
             }
             let detours = agents.plan.get(i).copied().flatten();
             let length = match detours.is_some_and(|plan| plan.detours) {
@@ -193,8 +204,9 @@ impl Crowd {
                     way.map_or(f64::INFINITY, |way| way.length)
                 }),
             };
-            lengths[usize::from(trip.place)].push(length);
-        }
+            Some((usize::from(trip.place), length))
+        });
+        let lengths = lengths_of(bound.collect(), self.progress.places.len());
         for (state, lengths) in self.progress.places.iter_mut().zip(&lengths) {
             state.stream.recount(lengths);
         }
@@ -212,13 +224,9 @@ impl Crowd {
             // It may have left its triangle since the last coarse frame.
             let here = rooms.floor.locate_from(plan.triangle, p);
             let length = rooms.length_to(p, here.unwrap_or(plan.triangle), step);
-            Some((step, length.unwrap_or(0.0)))
+            Some((step as usize, length.unwrap_or(0.0)))
         });
-        let toward: Vec<Option<(Step, f64)>> = toward.collect();
-        let mut lengths = vec![Vec::new(); rooms.steps() as usize];
-        for (step, length) in toward.into_iter().flatten() {
-            lengths[step as usize].push(length);
-        }
+        let lengths = lengths_of(toward.collect(), rooms.steps() as usize);
         self.progress
             .steps
             .resize_with(lengths.len(), Stream::default);

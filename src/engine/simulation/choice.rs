@@ -23,6 +23,7 @@ impl Simulation {
             scene: &self.fixed.scene,
             crowd: &self.crowd,
             agent: i,
+            is_asked: true,
         };
         (trip.status == Status::Walking).then(|| chooser.decide(trip, Some(trip.place)))
     }
@@ -34,6 +35,8 @@ pub(super) struct Chooser<'a> {
     pub(super) crowd: &'a Crowd,
     /// Its index.
     pub(super) agent: usize,
+    /// Whether all its expectations are asked for, or only its decision.
+    pub(super) is_asked: bool,
 }
 
 /// A place of an agent's stage, as the agent sees it.
@@ -126,9 +129,12 @@ impl Chooser<'_> {
     /// Decides between the places of the current stage of `trip`. `before` is the place that the agent walks to now.
     pub(super) fn decide(&self, trip: &Trip, before: Option<u16>) -> Decision {
         let stage = self.stage(trip);
-        let prospects = self.prospects(trip);
+        let mut prospects = self.prospects(trip);
         let open = candidates(&prospects);
         let before = before.filter(|place| open.contains(place));
+        if self.scene.by_time() {
+            self.expect_waits(&mut prospects, before);
+        }
         let of = |place: u16| prospects.iter().find(|prospect| prospect.place == place);
         let (place, reason) = match &stage.choice {
             Choice::Nearest => {
@@ -238,6 +244,30 @@ impl Chooser<'_> {
         }
     }
 
+    /// Adds the waits on the ways to the expected times. A place that is not clearly quicker than place `before`
+    /// without them is not quicker with them: its time stays too short unless it is asked for.
+    fn expect_waits(&self, prospects: &mut [Prospect], before: Option<u16>) {
+        let mut known = None;
+        let mut wait = |prospect: &mut Prospect| {
+            let to = (self.agent, prospect.place);
+            let expected = prospect.expected.as_mut()?;
+            if let Some(walking) = self.crowd.time_to(self.scene, to, &mut known) {
+                expected.walking_secs = walking;
+                expected.total_secs = walking.max(expected.waiting_secs) + expected.onward_secs;
+            }
+            Some(expected.total_secs)
+        };
+        let is_kept = |prospect: &&mut Prospect| Some(prospect.place) == before;
+        let kept = prospects.iter_mut().find(is_kept).and_then(&mut wait);
+        for prospect in prospects {
+            let least = prospect.expected.map_or(f64::INFINITY, |e| e.total_secs);
+            let can_win = kept.is_none_or(|kept| is_clearly_quicker(least, kept));
+            if Some(prospect.place) != before && (can_win || self.is_asked) {
+                wait(prospect);
+            }
+        }
+    }
+
     /// The lengths of the ways from `p` to some places, meters; infinite where there is none.
     fn lengths(&self, p: Vector, places: &[u16]) -> Vec<f64> {
         match &self.scene.ways {
@@ -254,8 +284,8 @@ impl Chooser<'_> {
         way.map_or(f64::INFINITY, |way| way.length)
     }
 
-    /// The times that the agent expects for a place at the end of a way of this length, meters, and for the way to the
-    /// next stage.
+    /// The times that the agent expects for a place at the end of a way of this length, meters, without waits on it,
+    /// and for the way to the next stage.
     fn expect(&self, place: u16, length: f64, onward: Option<&JourneyStage>) -> Expected {
         let own = self.crowd.agents.preferred_speed.get(self.agent);
         let speed = own.copied().unwrap_or(self.scene.preferred_speed);
@@ -270,8 +300,7 @@ impl Chooser<'_> {
             let shortest = lengths.filter(|length| length.is_finite()).reduce(f64::min);
             shortest.unwrap_or(0.0)
         });
-        let by_time = || self.crowd.time_to(self.scene, self.agent, place);
-        let walking = by_time().unwrap_or(length / speed);
+        let walking = length / speed;
         let waiting = f64::from(ahead) / flow;
         let onward = onward / speed;
         Expected {

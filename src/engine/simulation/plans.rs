@@ -9,13 +9,13 @@ use rand::Rng;
 use rayon::prelude::*;
 
 use super::bound::{self, Stream};
-use super::times::Outlook;
+use super::times::{Outlook, SINGLE_FILE};
 use super::{Crowd, Simulation, Stage};
 use crate::engine::journeys::Status;
 use crate::engine::neighbors::{BLOCK, TASK};
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Scene;
-use crate::engine::ways::{Plan, Rooms, Step, Ways};
+use crate::engine::ways::{Leaving, Plan, Rooms, Step, Ways};
 
 /// Agents compare their ways again after a random time in this range, seconds.
 const AGAIN: [f64; 2] = [2.0, 5.0];
@@ -30,8 +30,8 @@ const LEAST_SHARE: f64 = 0.1;
 /// each see the waits that follow from the choices before; when all have chosen, they choose again.
 const BATCHES: usize = 8;
 const LEAST_BATCH: usize = 8;
-/// With so many agents ahead per meter of an opening, agents use its whole width: they walk straight to it, not to the
-/// corner that the shortest way bends around.
+/// With so many agents ahead per meter of an opening that several can pass beside each other, agents use its whole
+/// width: they walk straight to it, not to the corner that the shortest way bends around.
 const CROWD_PER_METER: f64 = 3.0;
 
 /// The ways that an agent compares.
@@ -53,9 +53,12 @@ pub(super) fn is_clearly_quicker(new: f64, old: f64) -> bool {
 /// An agent that is due.
 struct Due {
     agent: usize,
-    /// Where it was and where it is.
-    triangles: [Option<u32>; 2],
+    /// The triangles where it was and where it is.
+    from: Option<u32>,
+    here: u32,
     goal: u16,
+    /// The ways that it compares.
+    leaving: Leaving,
 }
 
 impl Simulation {
@@ -82,11 +85,11 @@ impl Simulation {
         let plan = crowd.agents.plan.get(i).copied().flatten()?;
         let ways = scene.ways.as_ref()?;
         let p = crowd.agents.position[i];
-        let shortest = ways.shortest((p, plan.triangle), plan.goal);
+        let leaving = ways.leaving((p, plan.triangle), plan.goal, None)?;
         Some(Comparison {
             plan,
-            shortest: shortest.and_then(|shortest| shortest.step),
-            outlooks: crowd.outlooks_of(scene, i, (plan.goal, plan.triangle), shortest),
+            shortest: leaving.shortest.and_then(|shortest| shortest.step),
+            outlooks: crowd.outlooks_of(scene, i, (plan.goal, &leaving)),
         })
     }
 }
@@ -106,7 +109,7 @@ impl Crowd {
             self.look_ahead(scene, rooms);
         }
         let (new, others): (Vec<Due>, Vec<Due>) =
-            due.into_iter().partition(|due| due.triangles[0].is_none());
+            due.into_iter().partition(|due| due.from.is_none());
         for due in &others {
             self.plan(scene, due, false);
         }
@@ -173,8 +176,10 @@ impl Crowd {
             }
             Some(Due {
                 agent,
-                triangles: [before, Some(here)],
+                from: before,
+                here,
                 goal,
+                leaving: ways.leaving((p, here), goal, None)?,
             })
         });
         let mut due: Vec<Due> = due.collect();
@@ -186,11 +191,15 @@ impl Crowd {
 
     /// An agent that is due compares its ways; `afresh`: whatever it has planned.
     fn plan(&mut self, scene: &Scene, due: &Due, afresh: bool) {
-        let (i, goal) = (due.agent, due.goal);
-        let (Some(ways), [before, Some(here)]) = (&scene.ways, due.triangles) else {
-            return;
-        };
-        let Some(rooms) = &ways.rooms else {
+        let &Due {
+            agent: i,
+            here,
+            goal,
+            ref leaving,
+            ..
+        } = due;
+        let rooms = scene.ways.as_ref().and_then(|ways| ways.rooms.as_ref());
+        let (Some(ways), Some(rooms)) = (&scene.ways, rooms) else {
             return;
         };
         if self.progress.onward[usize::from(goal)].is_empty()
@@ -201,7 +210,8 @@ impl Crowd {
             self.progress.onward[usize::from(goal)] = onward;
         }
         let (p, old) = (self.agents.position[i], self.agents.plan[i]);
-        let from = before
+        let from = due
+            .from
             .map(|t| rooms.room(t))
             .filter(|&from| from != rooms.room(here));
         let taken = from.and_then(|from| rooms.step_between(from, rooms.room(here), p));
@@ -211,25 +221,25 @@ impl Crowd {
                 self.progress.places[usize::from(door)].passed += 1;
             }
         }
-        let shortest = ways.shortest((p, here), goal);
-        let outlooks = self.outlooks_of(scene, i, (goal, here), shortest);
+        let outlooks = self.outlooks_of(scene, i, (goal, leaving));
         let kept = kept(
             old.filter(|old| old.goal == goal && !afresh),
             taken,
             from.is_some(),
             &outlooks,
         );
-        let best = outlooks
-            .iter()
-            .min_by(|a, b| a.total.total_cmp(&b.total))
-            .copied();
-        let chosen = match (best, kept) {
-            (Some(best), Some(kept)) if !is_clearly_quicker(best.total, kept.total) => Some(kept),
-            _ => best,
-        };
+        let crossed = taken.or(old.and_then(|old| old.crossed));
+        let shortest = leaving.shortest.map(|shortest| shortest.step);
+        let leads_on =
+            |step: &Option<Step>| step.is_none() || *step != crossed.map(|step| step ^ 1);
+        let usual = shortest.filter(leads_on).and_then(|step| {
+            let mut outlooks = outlooks.iter();
+            outlooks.find(|one| one.step == step).copied()
+        });
+        let chosen = chosen(kept, usual, &outlooks);
         let changes = kept.is_some() && chosen.map(|one| one.step) != kept.map(|one| one.step);
         let toward = chosen.and_then(|chosen| chosen.step);
-        let is_elsewhere = shortest.is_none_or(|shortest| shortest.step != toward);
+        let is_elsewhere = shortest.is_none_or(|step| step != toward);
         let detours =
             chosen.is_some_and(|way| is_elsewhere || scene.by_time() && is_crowded(&way, rooms));
         let turns = old.map_or(0, |old| old.turns) + 1;
@@ -241,7 +251,7 @@ impl Crowd {
             triangle: here,
             goal,
             toward,
-            crossed: taken.or(old.and_then(|old| old.crossed)),
+            crossed,
             detours,
             decides_at: self.clock.coarse_frame_at(again),
             turns,
@@ -253,7 +263,11 @@ impl Crowd {
         }
         // Agents that choose after this one see its choice.
         let left = old.and_then(|old| old.toward);
-        let length = |step| rooms.length_to(p, here, step).unwrap_or(0.0);
+        let length = |step| {
+            let known = leaving.through(step).map(|[length, _]| length);
+            let length = known.or_else(|| rooms.length_to(p, here, step));
+            length.unwrap_or(0.0)
+        };
         if left != toward || taken.is_some() {
             if let Some(step) = left {
                 let length = if taken.is_some() { 0.0 } else { length(step) };
@@ -267,10 +281,25 @@ impl Crowd {
     }
 }
 
-/// Whether a crowd stands before the opening of a way.
+/// Whether a crowd stands before the opening of a way, and several people pass it beside each other.
 fn is_crowded(way: &Outlook, rooms: &Rooms) -> bool {
     let width = way.step.map(|step| rooms.opening(step).width());
+    let width = width.filter(|&width| width >= SINGLE_FILE);
     width.is_some_and(|width| f64::from(way.ahead) >= CROWD_PER_METER * width)
+}
+
+/// The way that an agent takes: the quickest, if that is clearly quicker than the one that it has kept; else the
+/// shortest one that does not lead back, `usual`, if it is not slower than the one kept.
+fn chosen(kept: Option<Outlook>, usual: Option<Outlook>, outlooks: &[Outlook]) -> Option<Outlook> {
+    let quickest = outlooks.iter().min_by(|a, b| a.total.total_cmp(&b.total));
+    let (Some(best), Some(kept)) = (quickest, kept) else {
+        return quickest.copied();
+    };
+    if is_clearly_quicker(best.total, kept.total) {
+        return Some(*best);
+    }
+    let usual = usual.filter(|usual| usual.total <= kept.total);
+    Some(usual.unwrap_or(kept))
 }
 
 /// The way that an agent keeps unless another one is clearly quicker: the one that it has planned, and after a step the

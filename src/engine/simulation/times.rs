@@ -4,13 +4,13 @@ use super::bound;
 use super::{Crowd, Progress, Simulation};
 use crate::engine::math::Vector;
 use crate::engine::scene::{Knowledge, Scene};
-use crate::engine::ways::{Destination, Rooms, Shortest, Step};
+use crate::engine::ways::{Destination, Leaving, Rooms, Step};
 
 /// Waiting before a closed door is expected to take this long, seconds.
 const CLOSED: f64 = 3600.0;
 
 /// Agents do not pass each other in narrower openings, meters.
-const SINGLE_FILE: f64 = 1.0;
+pub(super) const SINGLE_FILE: f64 = 1.0;
 /// Slower agents are expected to walk at this speed, m/s.
 const SLOWEST: f64 = 0.05;
 
@@ -94,21 +94,20 @@ impl Times<'_> {
         self.rooms.onward(goal, leg)
     }
 
-    /// The ways out of the room of `p`, in triangle `t`, that lead to a goal; `onward` are the times beyond, for the
+    /// The times of the ways that leave a room, for a goal and a speed, m/s; `onward` are the times beyond, for the
     /// scene's speed.
     ///
-    /// Ways lead over the middles of openings, but the length of the `shortest` one is exact.
+    /// Ways lead over the middles of openings, but the length of the shortest one is exact.
     pub fn outlooks(
         &self,
-        (p, t): (Vector, u32),
-        goal: usize,
-        onward: &[f64],
-        (speed, shortest): (f64, Option<Shortest>),
+        leaving: &Leaving,
+        (goal, onward): (usize, &[f64]),
+        speed: f64,
     ) -> Vec<Outlook> {
         let speed = speed.max(SLOWEST);
         let slower = 1.0 / speed - 1.0 / self.scene.preferred_speed.max(SLOWEST);
-        let exact = shortest.filter(|_| !self.rooms.has_one_way());
-        let direct = self.rooms.length_to_goal(p, t, goal).map(|length| Outlook {
+        let exact = leaving.shortest.filter(|_| !self.rooms.has_one_way());
+        let direct = leaving.direct.map(|length| Outlook {
             step: None,
             length,
             ahead: 0,
@@ -116,10 +115,9 @@ impl Times<'_> {
             until_through: length / speed,
             total: length / speed,
         });
-        let steps = self.rooms.steps_out(self.rooms.room(t)).iter();
-        let through = steps.filter_map(|&step| {
+        let through = leaving.through.iter();
+        let through = through.filter_map(|&(step, [length, aside])| {
             let onward = onward.get(step as usize).filter(|time| time.is_finite())?;
-            let [length, aside] = self.rooms.lengths_to(p, t, step)?;
             let until_through = self.leg(Some(step), length, (speed, true));
             let from = self.rooms.length_from(step, goal);
             let over = length + aside + from;
@@ -159,16 +157,17 @@ impl Simulation {
             let Some(t) = at.or_else(|| rooms.floor.nearest(here)) else {
                 break;
             };
-            let shortest = ways.shortest((here, t), goal as u16);
-            let usual = (scene.preferred_speed, shortest);
-            let mut all = times.outlooks((here, t), goal, &onward, usual);
+            let Some(leaving) = ways.leaving((here, t), goal as u16, None) else {
+                break;
+            };
+            let mut all = times.outlooks(&leaving, (goal, &onward), scene.preferred_speed);
             all.retain(|outlook| outlook.step.is_none() || outlook.step != back);
             let Some(best) = all.into_iter().min_by(|a, b| a.total.total_cmp(&b.total)) else {
                 break;
             };
             // As agents do: the shortest way as long as it leads through the chosen opening.
             let mut course = ways.course(here, to);
-            let crossing = rooms.first_crossing(here, t, &course);
+            let crossing = rooms.first_crossing(here, t, course.iter().copied());
             if crossing.map(|crossing| crossing.step) != best.step {
                 course = rooms.course((here, t), goal, best.step);
             } else if let Some(crossing) = crossing {
@@ -209,17 +208,16 @@ impl Crowd {
             rooms,
             scene,
             progress: &self.progress,
-            per_meter: self.flow_per_meter(),
+            per_meter: self.flow_per_meter().max(bound::FLOW_PER_METER_OF_OPENINGS),
         })
     }
 
-    /// The ways out of the room of agent `i`, in triangle `t`, that lead to a goal.
+    /// The times that agent `i` expects for the ways out of its room to a goal.
     pub(super) fn outlooks_of(
         &self,
         scene: &Scene,
         i: usize,
-        (goal, t): (u16, u32),
-        shortest: Option<Shortest>,
+        (goal, leaving): (u16, &Leaving),
     ) -> Vec<Outlook> {
         let goal = usize::from(goal);
         let onward = self.progress.onward.get(goal);
@@ -228,22 +226,31 @@ impl Crowd {
         };
         let own = self.agents.preferred_speed.get(i).copied();
         let speed = own.unwrap_or(scene.preferred_speed);
-        let at = (self.agents.position[i], t);
-        times.outlooks(at, goal, onward, (speed, shortest))
+        times.outlooks(leaving, (goal, onward), speed)
     }
 
-    /// The time that agent `i` expects for the way to a goal, seconds; `None` if it is not known.
-    pub(super) fn time_to(&self, scene: &Scene, i: usize, goal: u16) -> Option<f64> {
+    /// The time that agent `i` expects for the way to a goal, seconds; `None` if it is not known. Keeps what other
+    /// goals share in `known`.
+    pub(super) fn time_to(
+        &self,
+        scene: &Scene,
+        (i, goal): (usize, u16),
+        known: &mut Option<(u32, Leaving)>,
+    ) -> Option<f64> {
         let rooms = scene.rooms().filter(|_| scene.by_time())?;
         let p = self.agents.position[i];
         let plan = self.agents.plan.get(i).copied().flatten();
-        let before = plan.map(|plan| plan.triangle);
-        let here =
-            before.map_or_else(|| rooms.floor.locate(p), |t| rooms.floor.locate_from(t, p))?;
-        let shortest = scene.ways.as_ref()?.shortest((p, here), goal);
-        let all = self
-            .outlooks_of(scene, i, (goal, here), shortest)
-            .into_iter();
-        all.map(|outlook| outlook.total).reduce(f64::min)
+        let locate = || match plan {
+            Some(plan) => rooms.floor.locate_from(plan.triangle, p),
+            None => rooms.floor.locate(p),
+        };
+        let here = known.as_ref().map(|known| known.0).or_else(locate)?;
+        let ways = known.as_ref().map(|known| &known.1);
+        let leaving = scene.ways.as_ref()?.leaving((p, here), goal, ways)?;
+        let all = self.outlooks_of(scene, i, (goal, &leaving));
+        *known = Some((here, leaving));
+        all.into_iter()
+            .map(|outlook| outlook.total)
+            .reduce(f64::min)
     }
 }

@@ -231,6 +231,7 @@ impl Crowd {
             scene,
             crowd: self,
             agent: i,
+            is_asked: false,
         };
         let before = (trip.status == Status::Walking).then_some(trip.place);
         let (place, chooses_at) = chooser.choose(&trip, before);

@@ -18,30 +18,78 @@ pub struct Shortest {
     pub length: f64,
 }
 
+/// The ways out of a room that lead to a goal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Leaving {
+    /// The length of the way to the goal inside of the room, meters.
+    pub direct: Option<f64>,
+    /// Steps out of the room, each with the length of the way to its opening and the distance from where that ends to
+    /// the middle of the opening, meters.
+    pub through: Vec<(Step, [f64; 2])>,
+    /// The shortest of all ways to the goal, also through one-way doors against their direction.
+    pub shortest: Option<Shortest>,
+}
+
+impl Leaving {
+    /// The lengths for a step, meters, if it is one of these ways.
+    pub fn through(&self, step: Step) -> Option<[f64; 2]> {
+        let mut through = self.through.iter();
+        through.find(|way| way.0 == step).map(|way| way.1)
+    }
+}
+
 impl Ways {
     /// The points of the shortest way from `p`, meters: its corners in order, then its end. Empty if there is no way.
     pub fn course(&self, p: Vector, to: Destination) -> Vec<Vector> {
         let first = self.map_to(to).zip(self.way(p, to));
         first.map_or(Vec::new(), |(map, way)| {
-            points(&self.floor, &self.maps[usize::from(map)], way.next)
+            points(&self.floor, &self.maps[usize::from(map)], way.next).collect()
         })
     }
 
-    /// The step by which the shortest way of a path map leaves the room of `p`, in triangle `t` of the rooms, and its
-    /// length, meters.
-    pub fn shortest(&self, (p, t): (Vector, u32), map: u16) -> Option<Shortest> {
-        let way = self.from(map, p)?;
-        let points = points(&self.floor, &self.maps[usize::from(map)], way.next);
-        Some(Shortest {
-            step: self.rooms.as_ref()?.first_on(p, t, &points),
-            length: way.length,
+    /// The ways out of the room of `p`, in triangle `t` of the rooms, that lead to the goal of a path map, and the
+    /// shortest of all ways; `None` without rooms. `known`: those to another goal from there.
+    pub fn leaving(
+        &self,
+        (p, t): (Vector, u32),
+        map: u16,
+        known: Option<&Leaving>,
+    ) -> Option<Leaving> {
+        let (rooms, goal) = (self.rooms.as_ref()?, usize::from(map));
+        let steps = rooms.steps_out(rooms.room(t)).iter();
+        let steps = steps.filter(|&&step| rooms.length_from(step, goal).is_finite());
+        let through = steps.filter_map(|&step| {
+            let known = known.and_then(|known| known.through(step));
+            Some((step, known.or_else(|| rooms.lengths_to(p, t, step))?))
+        });
+        let (direct, through) = (
+            rooms.length_to_goal(p, t, goal),
+            through.collect::<Vec<_>>(),
+        );
+        let shortest = self.from(map, p).map(|way| {
+            let step = match through[..] {
+                [(only, _)] if direct.is_none() && !rooms.has_one_way() => Some(only),
+                _ => {
+                    let points = points(&self.floor, &self.maps[goal], way.next);
+                    rooms.first_crossing(p, t, points).map(|first| first.step)
+                }
+            };
+            Shortest {
+                step,
+                length: way.length,
+            }
+        });
+        Some(Leaving {
+            direct,
+            through,
+            shortest,
         })
     }
 
     /// The points of the rest of a route, as in [`course`](Self::course); of a detour, those up to its opening.
     pub fn course_of(&self, route: &Route) -> Vec<Vector> {
         match self.map_of(route) {
-            Some((floor, map)) => points(floor, map, route.first(floor)),
+            Some((floor, map)) => points(floor, map, route.first(floor)).collect(),
             None => vec![self.next(route)],
         }
     }
@@ -57,28 +105,21 @@ impl Ways {
 pub fn end(floor: &Floor, map: &PathMap, first: Next) -> Option<Vector> {
     match first {
         Next::Goal(point) => Some(point),
-        Next::Corner { .. } | Next::Out(_) => points(floor, map, first).pop(),
+        Next::Corner { .. } | Next::Out(_) => points(floor, map, first).last(),
     }
 }
 
 /// The points of the way that begins with `first`, meters.
-pub fn points(floor: &Floor, map: &PathMap, first: Next) -> Vec<Vector> {
-    let (mut points, mut next) = (Vec::new(), Some(first));
-    while let Some(now) = next.take_if(|_| points.len() < MOST_POINTS) {
-        match now {
-            Next::Goal(point) => points.push(point),
-            Next::Corner { bend, .. } => {
-                let bends = std::iter::successors(Some(bend), |bend| map.after(*bend));
-                let bends: Vec<_> = bends.take(MOST_POINTS).collect();
-                points.extend(bends.iter().map(|&bend| floor.place(bend)));
-                let last = bends.last();
-                points.extend(last.and_then(|&bend| map.end_after(floor, bend)));
-            }
-            Next::Out(point) => {
-                points.push(point);
-                next = map.way_from(floor, point).map(|way| way.next);
-            }
-        }
-    }
-    points
+pub fn points(floor: &Floor, map: &PathMap, first: Next) -> impl Iterator<Item = Vector> {
+    let mut next = Some(first);
+    let points = std::iter::from_fn(move || {
+        let now = next?;
+        next = match now {
+            Next::Goal(_) => None,
+            Next::Corner { bend, .. } => map.after(floor, bend),
+            Next::Out(point) => map.way_from(floor, point).map(|way| way.next),
+        };
+        Some(now.place(floor))
+    });
+    points.take(MOST_POINTS)
 }

@@ -16,17 +16,20 @@ pub struct Crossing {
 
 /// The points of a way from `p`, whose corners are moved off their walls: openings end at corners, and walls go on
 /// behind them.
-pub fn beside_corners(p: Vector, points: &[Vector]) -> Vec<Vector> {
-    let mut beside = vec![p];
-    for (k, &point) in points.iter().enumerate() {
-        let before = if k == 0 { p } else { points[k - 1] };
-        let away = points.get(k + 1).map_or(Vector::zeros(), |next| {
+pub fn beside_corners(
+    p: Vector,
+    points: impl IntoIterator<Item = Vector>,
+) -> impl Iterator<Item = Vector> {
+    let (mut points, mut before) = (points.into_iter().peekable(), p);
+    std::iter::from_fn(move || {
+        let point = points.next()?;
+        let away = points.peek().map_or(Vector::zeros(), |next| {
             // The wall is on the side to which the way turns.
             direction(direction(point - before) - direction(next - point))
         });
-        beside.push(point + away * OFF_WALLS);
-    }
-    beside
+        before = point;
+        Some(point + away * OFF_WALLS)
+    })
 }
 
 /// Corners are moved off their walls by this, meters.

@@ -333,16 +333,16 @@ impl PathMap {
         Some(Way::without_entry(Next::Out(next), length, distance))
     }
 
-    /// The bend after `bend` on the way; `None` if the way from there leads straight to the goal.
-    pub fn after(&self, bend: Bend) -> Option<Bend> {
-        self.targets.bend(self.targets.next[bend.index()])
-    }
-
-    /// The end of ways whose last corner is this one, meters; `None` if another corner follows.
-    pub fn end_after(&self, floor: &Floor, bend: Bend) -> Option<Vector> {
+    /// What comes after a corner on the way: another corner, without its visible cone, or the end.
+    pub fn after(&self, floor: &Floor, bend: Bend) -> Option<Next> {
         let next = self.targets.next[bend.index()];
+        if let Some(bend) = self.targets.bend(next) {
+            let borders = [floor.place(bend); 2];
+            return Some(Next::Corner { bend, borders });
+        }
         self.targets.source(next)?;
-        Some(self.targets.nearest(floor, next, floor.place(bend)))
+        let end = self.targets.nearest(floor, next, floor.place(bend));
+        Some(Next::Goal(end))
     }
 
     /// Whether some way bends, because a wall or a closed passage hides the goal.

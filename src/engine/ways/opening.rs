@@ -56,6 +56,11 @@ impl Opening {
         self.door.map(|(place, _)| place)
     }
 
+    /// Whether it can be passed in one direction only.
+    pub fn is_one_way(&self) -> bool {
+        self.door.is_some_and(|(_, only)| only.is_some())
+    }
+
     /// Its longest straight part, meters.
     pub(super) fn longest(&self) -> [Vector; 2] {
         let length = |[a, b]: &[Vector; 2]| (b - a).norm_squared();

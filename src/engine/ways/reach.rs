@@ -25,9 +25,11 @@ impl Ways {
     /// floor's least width. If this holds for all places, as in a niche that an agent was pushed into, the lengths are
     /// those of the ways out through any passage.
     pub fn lengths(&self, p: Vector, places: &[u16]) -> Vec<f64> {
-        let ways = places
-            .iter()
-            .map(|&place| self.way(p, Destination::Place(place)));
+        let here = self.floor.locate(p).or_else(|| self.floor.nearest(p));
+        let ways = places.iter().map(|&place| {
+            let map = self.map_to(Destination::Place(place))?;
+            self.maps[usize::from(map)].way(&self.floor, p, here?, None)
+        });
         let ways: Vec<Option<Way>> = ways.collect();
         let is_narrow_here = !ways.iter().flatten().any(Way::is_wide);
         let rooms = self.rooms.as_ref().filter(|rooms| rooms.has_one_way());

@@ -32,7 +32,9 @@ pub struct Rooms {
     /// The room of each triangle.
     of_triangle: Vec<u32>,
     openings: Vec<Opening>,
-    /// The steps out of each room.
+    has_one_way: bool,
+    /// The steps out of each room, and those of them that can be taken.
+    around: Vec<Vec<Step>>,
     out: Vec<Vec<Step>>,
     /// For each step, the steps that can come before it in its room, with the length of the way between the middles of
     /// their openings, meters.
@@ -68,17 +70,20 @@ impl Rooms {
         let openings = openings(&floor, &cuts, &of_triangle)?;
         let count = of_triangle.iter().max().map_or(0, |&most| most + 1);
         let mut rooms = Self {
+            around: vec![Vec::new(); count as usize],
             out: vec![Vec::new(); count as usize],
             before: vec![Vec::new(); 2 * openings.len()],
             goals: Vec::new(),
             last: Vec::new(),
             lengths: Vec::new(),
+            has_one_way: openings.iter().any(Opening::is_one_way),
             floor,
             of_triangle,
             openings,
         };
         for step in 0..rooms.steps() {
             let source = rooms.source(step) as usize;
+            rooms.around[source].push(step);
             if rooms.is_passable(step) {
                 rooms.out[source].push(step);
             }
@@ -145,7 +150,7 @@ impl Rooms {
 
     /// Whether some doors can be passed in one direction only.
     pub fn has_one_way(&self) -> bool {
-        (0..self.steps()).any(|step| !self.is_passable(step))
+        self.has_one_way
     }
 
     /// The length of the shortest way from a step to a goal, meters, measured over the middles of openings.
@@ -217,7 +222,8 @@ impl Rooms {
 
     /// The step from one room to another whose opening is nearest to `p`; `None` if there is none.
     pub fn step_between(&self, from: u32, to: u32, p: Vector) -> Option<Step> {
-        let steps = (0..self.steps()).filter(|&s| self.source(s) == from && self.target(s) == to);
+        let steps = self.around[from as usize].iter().copied();
+        let steps = steps.filter(|&step| self.target(step) == to);
         let distance = |step: Step| {
             let pieces = self.opening(step).pieces.iter();
             let each = pieces.map(|&[a, b]| to_segment(p, a, b));
@@ -250,7 +256,9 @@ impl Rooms {
     pub fn course(&self, (p, t): (Vector, u32), goal: usize, step: Option<Step>) -> Vec<Vector> {
         let map = step.map_or_else(|| &self.goals[goal], |step| self.map(step));
         let way = map.way(&self.floor, p, t, None);
-        way.map_or(Vec::new(), |way| points(&self.floor, map, way.next))
+        way.map_or(Vec::new(), |way| {
+            points(&self.floor, map, way.next).collect()
+        })
     }
 
     /// The direction of a step across its opening, of length 1.
@@ -266,25 +274,25 @@ impl Rooms {
         }
     }
 
-    /// The first of the steps out of the room of triangle `t` that a way over `points` from `p` takes; `None` if it
-    /// stays there.
-    pub fn first_on(&self, p: Vector, t: u32, points: &[Vector]) -> Option<Step> {
-        Some(self.first_crossing(p, t, points)?.step)
-    }
-
     /// Where a way over `points` from `p` first leaves the room of triangle `t`; `None` if it stays there.
-    pub fn first_crossing(&self, p: Vector, t: u32, points: &[Vector]) -> Option<Crossing> {
-        let steps = self.steps_out(self.room(t));
-        let points = beside_corners(p, points);
-        points.windows(2).enumerate().find_map(|(after, pair)| {
+    pub fn first_crossing(
+        &self,
+        p: Vector,
+        t: u32,
+        points: impl IntoIterator<Item = Vector>,
+    ) -> Option<Crossing> {
+        let (steps, mut from) = (self.steps_out(self.room(t)), p);
+        let mut points = beside_corners(p, points).enumerate();
+        points.find_map(|(after, to)| {
+            let straight = [std::mem::replace(&mut from, to), to];
             let part = |step: Step| {
                 let pieces = self.opening(step).pieces.iter();
-                let crossed = pieces.filter_map(|&piece| crossing(piece, [pair[0], pair[1]]));
+                let crossed = pieces.filter_map(|&piece| crossing(piece, straight));
                 Some((crossed.reduce(f64::min)?, step))
             };
             let crossed = steps.iter().filter_map(|&step| part(step));
             let (part, step) = crossed.min_by(|a, b| a.0.total_cmp(&b.0))?;
-            let at = pair[0] + part * (pair[1] - pair[0]);
+            let at = straight[0] + part * (to - straight[0]);
             Some(Crossing { step, after, at })
         })
     }

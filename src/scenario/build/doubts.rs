@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::engine::entrance::Entrance;
 use crate::engine::geometry::Walls;
-use crate::engine::journeys::Kind;
+use crate::engine::journeys::{Change, ChangeKind, Kind, Place};
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Group, Scene};
 use crate::engine::ways::nearest_on;
@@ -43,6 +43,7 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
         .chain(peaks(keys))
         .chain(at_exits(scene))
         .chain(unused(scene))
+        .chain(closed(keys, scene))
         .chain(unheeded(keys, scene))
         .chain(crowded(keys, scene, entering))
         .collect()
@@ -229,6 +230,29 @@ fn unused(scene: &Scene) -> Option<String> {
     Some(format!(
         "no agents use {first}{more}; give it to a crowd or a journey, or remove it"
     ))
+}
+
+/// Notes on doors that are closed for the whole run.
+fn closed(keys: &File, scene: &Scene) -> Vec<String> {
+    let journeys = &scene.journeys;
+    let end = keys.duration_secs.unwrap_or(f64::INFINITY);
+    let doors = journeys.places.iter().zip(0..);
+    let doors = doors.filter(|(place, _)| matches!(place.kind, Kind::Door(_)));
+    let note = |(k, (place, number)): (usize, (&Place, u16))| {
+        let changes = journeys.changes.iter().filter(|one| one.place == number);
+        let first: Vec<&Change> = changes.take_while(|one| one.at < end).collect();
+        let starts_closed = |one: &&Change| one.at <= 0.0 && one.kind == ChangeKind::Close;
+        let opens = |one: &&Change| one.kind == ChangeKind::Open;
+        let is_closed = first.iter().any(starts_closed) && !first.iter().any(opens);
+        is_closed.then(|| {
+            format!(
+                "doors[{k}]: `{}` is closed for the whole run: people to whose goal no other way leads wait before it; \
+                 check the times, or draw a wall in its place",
+                shown(&place.name)
+            )
+        })
+    };
+    doors.enumerate().filter_map(note).collect()
 }
 
 /// Notes on the journeys after which agents stay on the floor, unless they end in waiting areas.
