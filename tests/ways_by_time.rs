@@ -151,7 +151,7 @@ fn times_and_flows_follow_from_positions_and_choices() {
             .copied()
             .zip(frame.agents.position.clone())
             .collect();
-        let is_second = clock.frame() % clock.frame_at(1.0) == 0;
+        let is_second = clock.frame().is_multiple_of(clock.frame_at(1.0));
         if is_second {
             // The largest flow is that of the second before.
             let flows = gates.iter().map(|gate| gate.flow(1.3) / gate.width());
