@@ -41,6 +41,8 @@ mod identifiability;
 mod journeys;
 mod kernel;
 mod late;
+mod legs;
+mod legs_runs;
 mod loads;
 mod lone_agents;
 mod math;

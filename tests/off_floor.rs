@@ -43,6 +43,7 @@ fn measured_regions_off_the_floor_are_refused() {
         ("exposure", json!({})),
         ("service_levels", json!({})),
         ("crowd_pressure", json!({})),
+        ("unbalanced", json!({})),
         ("body_forces", json!({})),
         ("front", json!({})),
         ("oscillation", json!({})),

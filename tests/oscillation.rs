@@ -1,8 +1,8 @@
 //! Spectra of known oscillations: their frequency, their power and their sense of rotation are found again.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{E, TAU};
 
-use sandbox::analysis::oscillation::{Oscillation, Spectrum};
+use sandbox::analysis::oscillation::{Oscillation, Spectrum, correlation_length};
 use serde_json::json;
 
 use crate::common::simulated::{measured, scenario};
@@ -147,4 +147,32 @@ fn wrong_keys_are_refused() {
         let document = json!({"measurements": [{"oscillation": keys}]});
         assert_eq!(scenario(&document, &[]).unwrap_err(), said);
     }
+}
+
+#[test]
+fn the_correlation_length_of_known_fields_is_found() {
+    let turning = |phase: f64| -> Vec<[f64; 2]> {
+        let angles = (0..200).map(|n| 0.3 * f64::from(n) + phase);
+        angles.map(|angle| [angle.cos(), angle.sin()]).collect()
+    };
+    let field = |wave: f64| -> Vec<Option<Vec<[f64; 2]>>> {
+        (0..60)
+            .map(|k| Some(turning(wave * f64::from(k % 20))))
+            .collect()
+    };
+    let length = |field: &[_]| correlation_length(field, 20, [2.0, 2.0]).unwrap();
+    // All together: as long as the longest row; an empty box changes nothing.
+    assert_eq!(length(&field(0.0)), 38.0);
+    let mut holed = field(0.0);
+    holed[7] = None;
+    assert!((length(&holed) - 38.0).abs() < 1e-9);
+    // A wave: the correlation at a distance d is cos(q d), with q per box. Columns all move alike.
+    let single: Vec<_> = field(0.25).into_iter().take(20).collect();
+    let expected = 2.0 * (1.0 / E).acos() / 0.25;
+    let found = length(&single);
+    assert!(
+        (found - expected).abs() < 0.1,
+        "{found} instead of {expected}"
+    );
+    assert_eq!(correlation_length(&[], 1, [2.0, 2.0]), None);
 }

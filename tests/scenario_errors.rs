@@ -131,7 +131,7 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     [
         "profile=fs",
         "--set profile=fs: unknown profile `fs`; did you mean `sf`? (known profiles: sf, rvo, sf+sph, rvo+sph, sph, \
-         sf->sph, rvo->sph, walk+sph, steer+sph)",
+         sf->sph, rvo->sph, walk+sph, steer+sph, legs, legs+sph)",
     ],
     [
         "profile={\"base\": \"sf\", \"parameters\": {\"candidates\": 0}}",

@@ -84,7 +84,7 @@ fn the_keys_of_nested_objects_are_documented() {
             "measurements",
             "one of density, flow_of_first, flow_until, egress, evacuated, uncounted, pauses, locked, snapshot, wave, \
              front, push, oscillation, contacts, jitter, closest, integrity, speed_by_density, walks, line_flow, \
-             exposure, service_levels, crowd_pressure, body_forces, wall_forces or frame_time",
+             exposure, service_levels, crowd_pressure, unbalanced, body_forces, wall_forces or frame_time",
         ),
         ("measurements.density", "at_secs, region?"),
         (

@@ -93,6 +93,8 @@ fn stiff(term: Term) -> Vec<Parameters> {
         Term::Viscosity => all.viscosity = much,
         Term::ContactAgents => all.agent_stiffness = more,
         Term::ContactWalls => all.wall_stiffness = more,
+        Term::Balance => (all.legs, all.unbalancing_rate) = (Some(true), much),
+        Term::BodyAgents | Term::BodyWalls => (all.legs, all.legs_strength) = (Some(true), more),
     }
     vec![all]
 }

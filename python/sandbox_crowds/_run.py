@@ -23,7 +23,10 @@ if TYPE_CHECKING:
 
 
 def columns() -> dict[str, str]:
-    """The columns of `Run.trajectory`, `Run.agents` and `Simulation.agents`, with their meanings and units."""
+    """The columns of `Run.trajectory`, `Run.agents` and `Simulation.agents`, with their meanings and units.
+
+    Those of legs are there only if people have legs.
+    """
     return dict(_native.columns())
 
 

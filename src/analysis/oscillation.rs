@@ -5,7 +5,7 @@
 //! equal parts of both (J. Gonella, A rotary-component method for analysing meteorological and oceanographic vector
 //! time series, Deep-Sea Research 19, 1972).
 
-use std::f64::consts::TAU;
+use std::f64::consts::{E, TAU};
 
 use serde::{Deserialize, Serialize};
 
@@ -169,6 +169,63 @@ impl Oscillation {
     pub fn peak_share(&self) -> Option<f64> {
         self.spectrum.share(self.spectrum.around(self.peak?))
     }
+}
+
+/// How far apart boxes move together, meters: the distance along a row or column of boxes from which on the correlation
+/// of velocities, minus their means over time, is below 1/e; between two distances it is linear. If it never is, the
+/// length of the longest row. `boxes` go row by row, `None` where one was empty at some time; `sides` of a box, meters.
+/// `None` without motion.
+pub fn correlation_length(
+    boxes: &[Option<Vec<[f64; 2]>>],
+    columns: usize,
+    sides: [f64; 2],
+) -> Option<f64> {
+    let rows = boxes.len().checked_div(columns)?;
+    let still: Vec<_> = boxes
+        .iter()
+        .map(|of| of.as_deref().map(without_mean))
+        .collect();
+    let product = |a: usize, b: usize| -> Option<f64> {
+        let (a, b) = (still[a].as_deref()?, still[b].as_deref()?);
+        Some(
+            a.iter()
+                .zip(b)
+                .map(|(a, b)| a[0] * b[0] + a[1] * b[1])
+                .sum(),
+        )
+    };
+    let mean = |products: Vec<f64>| products.iter().sum::<f64>() / products.len().max(1) as f64;
+    let power = mean((0..boxes.len()).filter_map(|k| product(k, k)).collect());
+    let along = |step: usize, place: fn(usize, usize) -> usize, count: usize| -> Vec<f64> {
+        let at = |distance: usize| {
+            let inside = (0..boxes.len()).filter(|&k| place(k, columns) + distance < count);
+            mean(
+                inside
+                    .filter_map(|k| product(k, k + step * distance))
+                    .collect(),
+            ) / power
+        };
+        (0..count).map(at).collect()
+    };
+    let x = along(1, |k, columns| k % columns, columns);
+    let y = along(columns, |k, columns| k / columns, rows);
+    let lengths = [(x, sides[0]), (y, sides[1])].map(|(correlations, side)| {
+        let below = correlations.iter().position(|&part| part < 1.0 / E);
+        let last = correlations.len().saturating_sub(1) as f64;
+        side * below.map_or(last, |k| {
+            let (before, after) = (correlations[k - 1], correlations[k]);
+            k as f64 - (1.0 / E - after) / (before - after)
+        })
+    });
+    (power > 0.0).then(|| lengths[0].max(lengths[1]))
+}
+
+fn without_mean(series: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mean = [0, 1].map(|k| series.iter().map(|v| v[k]).sum::<f64>() / series.len() as f64);
+    series
+        .iter()
+        .map(|v| [v[0] - mean[0], v[1] - mean[1]])
+        .collect()
 }
 
 /// Σ_n z_n e^(−2πi kn/N) for all k; N is a power of two (Cooley and Tukey 1965).

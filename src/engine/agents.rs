@@ -1,6 +1,7 @@
 //! The state of the crowd: one array per quantity, sorted by cell of the neighbor grid.
 
 mod columns;
+mod legs;
 
 pub use columns::Spare;
 
@@ -97,6 +98,12 @@ pub struct Agents {
     /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
     /// only, otherwise empty.
     pub acceleration_before: Vec<Option<Vector>>,
+    /// y_i, the position of the legs, meters. Empty if no profile has legs.
+    pub legs: Vec<Vector>,
+    /// w_i, the velocity of the legs, m/s. As long as `legs`.
+    pub legs_velocity: Vec<Vector>,
+    /// As `acceleration_before`, of the legs.
+    pub legs_acceleration_before: Vec<Option<Vector>>,
     /// The way that the agent follows, held until the next coarse frame; `None` for agents that entered since. Empty
     /// in scenes without path maps.
     pub route: Vec<Option<Route>>,
@@ -147,7 +154,7 @@ impl Agents {
     }
 
     /// The arrays that may be empty, or lack agents that entered since.
-    fn sometimes(&mut self) -> [&mut dyn Column; 13] {
+    fn sometimes(&mut self) -> [&mut dyn Column; 16] {
         self.parts().1
     }
 
@@ -159,7 +166,7 @@ impl Agents {
     }
 
     /// The arrays with an entry for every agent, and the others.
-    fn parts(&mut self) -> ([&mut dyn Column; 10], [&mut dyn Column; 13]) {
+    fn parts(&mut self) -> ([&mut dyn Column; 10], [&mut dyn Column; 16]) {
         (
             [
                 &mut self.id,
@@ -178,6 +185,9 @@ impl Agents {
                 &mut self.allowed_speed,
                 &mut self.heading,
                 &mut self.acceleration_before,
+                &mut self.legs,
+                &mut self.legs_velocity,
+                &mut self.legs_acceleration_before,
                 &mut self.route,
                 &mut self.aim,
                 &mut self.plan,
@@ -200,6 +210,7 @@ impl Agents {
             .iter()
             .all(|&len| len == count || len == 0)
             && self.aim.len() == self.route.len()
+            && self.legs_velocity.len() == self.legs.len()
             && self.always().iter().all(|column| column.count() == count)
             && self
                 .sometimes()
@@ -280,10 +291,13 @@ impl Agents {
     /// Moves agents that have left the period to their image in it, and counts their laps.
     pub fn wrap(&mut self, period: &Period) {
         self.laps.resize(self.len(), 0);
-        for (position, laps) in self.position.iter_mut().zip(&mut self.laps) {
+        for (i, position) in self.position.iter_mut().enumerate() {
             let (image, passed) = period.wrapped(*position);
+            if let Some(legs) = self.legs.get_mut(i) {
+                *legs += image - *position;
+            }
             *position = image;
-            *laps = laps.wrapping_add(passed);
+            self.laps[i] = self.laps[i].wrapping_add(passed);
         }
     }
 

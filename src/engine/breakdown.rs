@@ -1,11 +1,13 @@
 //! The acceleration of one agent, term by term, computed with the engine's force functions on the frozen frame.
 
 mod heading;
+mod legs;
 mod openings;
 mod text;
 mod visit;
 
 pub use heading::{HeadingChoice, HeadingSeen};
+pub use legs::LegsPart;
 pub use openings::{WayChoice, WaySeen};
 pub use visit::{Alternative, Doing, Visit, Why};
 
@@ -65,6 +67,9 @@ pub struct Breakdown {
     /// The headings between which it chooses; `None` without the walking law `headings`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub choice: Option<HeadingChoice>,
+    /// Its legs; `None` if its profile has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub legs: Option<LegsPart>,
     /// The forces from outside this crate.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub own_forces: Vec<OwnForce>,
@@ -185,6 +190,7 @@ impl Breakdown {
                 .filter(|&from| frame.clock.time() < from),
             visit: Visit::of(simulation, i),
             choice: HeadingChoice::of(simulation, i),
+            legs: LegsPart::of(simulation, i),
             own_forces: own_forces.collect(),
             neighbors,
             walls: wall_terms(simulation, i),

@@ -11,6 +11,7 @@ use std::ops::Range;
 
 use crate::engine::forces::contact::{self, Contact};
 use crate::engine::forces::goal::GoalForce;
+use crate::engine::forces::legs::Legs;
 use crate::engine::forces::near::{self, PairCoefficients, Wanted};
 use crate::engine::forces::pressure;
 use crate::engine::forces::rates::{Extremes, Rates};
@@ -37,6 +38,8 @@ pub struct Profile {
     pub viscosity: Option<Viscosity>,
     /// Step 4.
     pub contact: Contact,
+    /// The legs under the body; `None` in the paper's profiles.
+    pub legs: Option<Legs>,
 }
 
 /// Step 3: how an agent finds its way.
@@ -116,6 +119,7 @@ impl Profile {
             pressure,
             viscosity,
             contact,
+            legs,
         } = self;
         let forces = [
             Some(navigation.rates(of)),
@@ -123,6 +127,7 @@ impl Profile {
             pressure.then(|| pressure::rates(of.sph)),
             viscosity.map(|viscosity| viscosity.rates()),
             Some(contact.rates(of)),
+            legs.map(|legs| legs.rates(of)),
         ];
         forces
             .into_iter()
@@ -143,6 +148,10 @@ impl Profile {
             Term::Viscosity => self.viscosity.is_some(),
             Term::ContactAgents => self.contact.agent_stiffness.is_some(),
             Term::ContactWalls => self.contact.wall_stiffness.is_some(),
+            Term::Balance => self.legs.is_some(),
+            Term::BodyAgents | Term::BodyWalls => {
+                self.legs.is_some_and(|legs| legs.legs_strength != 0.0)
+            }
         }
     }
 
@@ -170,6 +179,11 @@ impl Profile {
             if self.contact.wall_stiffness.is_some() {
                 terms.contact_walls.get_or_insert(Vector::zeros());
             }
+        }
+        if let Some(legs) = self.legs {
+            terms.balance = Some(legs.balance(frame, i).body);
+            terms.body_agents = Some(legs.from_agents(frame, i).body);
+            terms.body_walls = Some(legs.from_walls(frame, i).body);
         }
         terms
     }

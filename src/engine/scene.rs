@@ -340,7 +340,11 @@ impl Scene {
         let support = self
             .groups
             .iter()
-            .map(|group| group.blend.sph.support_radius)
+            .flat_map(|group| {
+                let legs = group.blend.legs();
+                let legs = legs.map(|legs| legs.legs_reach.max(legs.lean_limit));
+                legs.into_iter().chain([group.blend.sph.support_radius])
+            })
             .fold(0.0, f64::max);
         let longest_step = self.highest_speed(agents) * self.clock.time_step();
         let ahead = match self.integrator {

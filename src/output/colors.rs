@@ -19,7 +19,7 @@ pub const WALL_FORCE_RANGE: f32 = 3000.0;
 /// The colors of the terms of an acceleration, in words and as RGB; white is for their sum. Any two of these colors
 /// differ by at least 20 (CIE76, ΔE*ab), for normal vision and for simulated protanopia and deuteranopia (Machado,
 /// Oliveira and Fernandes 2009, severity 1.0).
-pub const TERMS: [(&str, Rgb); 10] = [
+pub const TERMS: [(&str, Rgb); 13] = [
     ("pale green", [201, 255, 181]),
     ("yellow", [251, 252, 3]),
     ("azure", [8, 164, 255]),
@@ -30,6 +30,9 @@ pub const TERMS: [(&str, Rgb); 10] = [
     ("gray violet", [151, 140, 168]),
     ("salmon", [230, 159, 157]),
     ("sea green", [47, 123, 92]),
+    ("blue", [0, 80, 240]),
+    ("cobalt", [0, 96, 208]),
+    ("khaki", [176, 144, 88]),
 ];
 
 /// The number of colors of a map: more than the eye can distinguish on a smooth field.
@@ -160,5 +163,7 @@ pub static WALL_FORCE: LazyLock<ColorMap> =
     LazyLock::new(|| ColorMap::heat([0.0, WALL_FORCE_RANGE]));
 /// Yellow to red for waits, seconds.
 pub static WAIT: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::heat([0.0, 60.0]));
+/// Yellow to red for leans, meters.
+pub static LEAN: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::heat([0.0, 0.55]));
 /// Inferno for speeds.
 pub static SPEED: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::inferno([0.0, SPEED_RANGE]));

@@ -7,6 +7,7 @@ pub mod documents;
 pub mod errands;
 pub mod floors;
 pub mod json_schema;
+pub mod legs;
 #[cfg(all(feature = "program", unix))]
 pub mod outputs;
 #[cfg(feature = "program")]

@@ -18,7 +18,7 @@ const CELLS: f64 = 400.0;
 const LEAST_CELL: f64 = 0.05;
 
 /// The units of quantities.
-const UNITS: [(&str, &str); 14] = [
+const UNITS: [(&str, &str); 15] = [
     ("density", "P/m²"),
     ("mean_density", "P/m²"),
     ("rest_density", "P/m²"),
@@ -33,6 +33,7 @@ const UNITS: [(&str, &str); 14] = [
     ("acc_x", "m/s²"),
     ("acc_y", "m/s²"),
     ("radius", "m"),
+    ("lean", "m"),
 ];
 
 /// The value of a cell of a field.

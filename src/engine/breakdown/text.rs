@@ -34,6 +34,7 @@ impl Display for Breakdown {
         self.write_visit(f)?;
         self.write_choice(f)?;
         self.write_accelerations(f)?;
+        self.write_legs(f)?;
         for wall in &self.walls {
             writeln!(
                 f,
@@ -179,6 +180,30 @@ impl Breakdown {
                 heading.room,
                 heading.utility,
             )?;
+        }
+        Ok(())
+    }
+
+    fn write_legs(&self, f: &mut Formatter) -> fmt::Result {
+        let Some(legs) = &self.legs else {
+            return Ok(());
+        };
+        writeln!(
+            f,
+            "  legs: position {} m, velocity {} m/s, lean {:.4} of {} m; accelerations, m/s²",
+            vector(legs.position),
+            vector(legs.velocity),
+            legs.lean,
+            legs.lean_limit
+        )?;
+        let terms = [
+            ("balance", legs.balance),
+            ("legs_agents", legs.agents),
+            ("legs_walls", legs.walls),
+            ("total", legs.acceleration),
+        ];
+        for (name, value) in terms {
+            writeln!(f, "    {name:<18} {}", vector(value))?;
         }
         Ok(())
     }

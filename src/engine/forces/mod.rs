@@ -6,6 +6,7 @@
 
 pub mod contact;
 pub mod goal;
+pub mod legs;
 pub mod near;
 pub mod own;
 pub mod pressure;

@@ -17,7 +17,6 @@ use schemars::JsonSchema;
 
 use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::frame::Frame;
-use crate::engine::geometry::WallPart;
 use crate::engine::math::{Vector, direction};
 use crate::engine::neighbors::{BLOCK, Run};
 use crate::engine::pairs::{Bodies, Level, Real, Simd, dispatch, each};
@@ -177,28 +176,10 @@ impl SocialForce {
     pub fn from_walls(&self, frame: &Frame, i: usize) -> Vector {
         let r_i = frame.agents.position[i];
         let seen = FieldOfView::new(frame.agents.velocity[i]);
-        let force: Vector = frame
-            .neighbors
-            .far_walls(i)
-            .iter()
-            .filter_map(|&k| {
-                let wall = frame.walls.wall(k);
-                if !wall.faces(r_i) {
-                    return None;
-                }
-                let nearest = wall.nearest_point(r_i);
-                // A corner belongs to two walls but counts once: for the wall that ends there.
-                let before = frame.walls.wall(wall.previous);
-                if nearest.part == WallPart::Start
-                    && before.faces(r_i)
-                    && before.nearest_point(r_i).part == WallPart::End
-                {
-                    return None;
-                }
-                let away = r_i - nearest.point;
-                let in_range = away.norm() < self.avoidance_radius;
-                in_range.then(|| self.wall_force(away) * seen.weight(-away))
-            })
+        let walls = frame.walls.facing(r_i, frame.neighbors.far_walls(i));
+        let force: Vector = walls
+            .filter(|(_, away)| away.norm() < self.avoidance_radius)
+            .map(|(_, away)| self.wall_force(away) * seen.weight(-away))
             .sum();
         force / frame.agents.mass[i]
     }

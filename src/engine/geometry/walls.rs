@@ -3,7 +3,7 @@
 use parry2d::bounding_volume::{Aabb, BoundingVolume};
 use parry2d::partitioning::Bvh;
 
-use super::{Polygon, Wall, bounds_of, index_of, to_parry};
+use super::{Polygon, Wall, WallPart, bounds_of, index_of, to_parry};
 use crate::engine::math::Vector;
 
 /// Distance in front of a wall at which a move stops, meters: far above the rounding of coordinates up to
@@ -94,6 +94,27 @@ impl Walls {
         let mut found: Vec<u32> = self.index.intersect_aabb(&reach).collect();
         found.sort_unstable();
         found
+    }
+
+    /// The vectors to `p` from its nearest points on those of `candidates` whose free side it is on, with the wall. A
+    /// corner belongs to two walls but counts once: for the wall that ends there.
+    pub fn facing<'a>(
+        &'a self,
+        p: Vector,
+        candidates: &'a [u32],
+    ) -> impl Iterator<Item = (u32, Vector)> + 'a {
+        candidates.iter().filter_map(move |&k| {
+            let wall = self.wall(k);
+            if !wall.faces(p) {
+                return None;
+            }
+            let nearest = wall.nearest_point(p);
+            let before = self.wall(wall.previous);
+            let counted = nearest.part == WallPart::Start
+                && before.faces(p)
+                && before.nearest_point(p).part == WallPart::End;
+            (!counted).then(|| (k, p - nearest.point))
+        })
     }
 
     /// The fraction of the move `from` → `to` at which it first crosses one of the walls `candidates` from the

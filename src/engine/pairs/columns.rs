@@ -46,6 +46,10 @@ pub struct Bodies<R: Real> {
     pub heading_x: Vec<R>,
     /// See `heading_x`.
     pub heading_y: Vec<R>,
+    /// The lean, coordinate units; empty if no profile has legs.
+    pub lean_x: Vec<R>,
+    /// See `lean_x`.
+    pub lean_y: Vec<R>,
 }
 
 /// The reach of the forces of an agent.
@@ -125,6 +129,24 @@ impl<R: Real> Bodies<R> {
             let heading = direction(wish);
             (*x, *y) = (R::of(heading.x), R::of(heading.y));
         }
+    }
+
+    /// Packs the leans of all agents; nothing without legs.
+    pub fn take_leans(&mut self, agents: &Agents) {
+        if agents.legs.is_empty() {
+            return;
+        }
+        let padded = agents.len() + LANES;
+        self.lean_x.resize(padded, R::default());
+        self.lean_y.resize(padded, R::default());
+        let per_meter = 1.0 / self.unit;
+        let columns = self.lean_x.par_iter_mut().zip(&mut self.lean_y);
+        let agents = agents.position.par_iter().zip(&agents.legs);
+        let leans = columns.zip(agents).with_min_len(TASK * BLOCK);
+        leans.for_each(|((x, y), (position, legs))| {
+            let lean = (position - legs) * per_meter;
+            (*x, *y) = (R::of(lean.x), R::of(lean.y));
+        });
     }
 
     /// Packs the positions and velocities of all agents.

@@ -111,8 +111,11 @@ impl Packed {
         each!(self, columns => columns.bodies.take_headings(wishes));
     }
 
-    /// Packs the positions and velocities of all agents.
+    /// Packs the positions, velocities and leans of all agents.
     pub fn take_motions(&mut self, agents: &Agents) {
-        each!(self, columns => columns.bodies.take_motions(agents));
+        each!(self, columns => {
+            columns.bodies.take_motions(agents);
+            columns.bodies.take_leans(agents);
+        });
     }
 }

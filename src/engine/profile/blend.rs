@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::{Navigation, Override, Profile};
 use crate::engine::density::SphParameters;
+use crate::engine::forces::legs::Legs;
 use crate::engine::forces::near::PairCoefficients;
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
@@ -58,6 +59,11 @@ pub enum BlendError {
          same parameters"
     )]
     DifferentLaws,
+    /// Two profiles have different legs, or only one has legs.
+    #[error(
+        "profiles of one blend share the legs under a body: give all of them the same parameters of `legs`"
+    )]
+    DifferentLegs,
     /// Two profiles have bodies of different sizes.
     #[error("profiles of one blend share one `contact_scale`: {1} follows {0}")]
     DifferentContact(f64, f64),
@@ -67,8 +73,8 @@ impl Blend {
     /// Combines profiles into a blend.
     ///
     /// # Errors
-    /// No profile or too many, densities that do not rise, or profiles with different RVO parameters, walking laws or
-    /// contact scales.
+    /// No profile or too many, densities that do not rise, or profiles with different RVO parameters, walking laws,
+    /// contact scales or legs.
     pub fn new(
         name: String,
         sph: SphParameters,
@@ -88,6 +94,9 @@ impl Blend {
             let [before, here] = [0, 1].map(|k| pair[k].profile.contact.contact_scale);
             if before != here {
                 return Err(BlendError::DifferentContact(before, here));
+            }
+            if pair[0].profile.legs != pair[1].profile.legs {
+                return Err(BlendError::DifferentLegs);
             }
         }
         let rvo = |step: &BlendStep| Some((rvo_of(&step.profile)?, step.profile.walking));
@@ -140,6 +149,11 @@ impl Blend {
     /// The RVO parameters of this blend, if any of its profiles uses RVO.
     pub fn rvo(&self) -> Option<Rvo> {
         self.steps.iter().find_map(|step| rvo_of(&step.profile))
+    }
+
+    /// The legs under the bodies of agents with this blend.
+    pub fn legs(&self) -> Option<Legs> {
+        self.steps[0].profile.legs
     }
 
     /// The walking law of the profiles that have one that looks ahead.

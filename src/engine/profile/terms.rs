@@ -25,6 +25,12 @@ pub struct Terms {
     pub contact_agents: Option<Vector>,
     /// Eq. 23.
     pub contact_walls: Option<Vector>,
+    /// The fall of a body that leans.
+    pub balance: Option<Vector>,
+    /// The repulsion of bodies.
+    pub body_agents: Option<Vector>,
+    /// The repulsion of bodies by walls.
+    pub body_walls: Option<Vector>,
 }
 
 /// A term of an agent's acceleration.
@@ -50,6 +56,12 @@ pub enum Term {
     ContactAgents,
     /// Eq. 23.
     ContactWalls,
+    /// The fall of a body that leans.
+    Balance,
+    /// The repulsion of bodies.
+    BodyAgents,
+    /// The repulsion of bodies by walls.
+    BodyWalls,
 }
 
 impl Term {
@@ -71,6 +83,9 @@ impl Term {
             Self::Viscosity => "viscosity",
             Self::ContactAgents => "contact_agents",
             Self::ContactWalls => "contact_walls",
+            Self::Balance => "balance",
+            Self::BodyAgents => "body_agents",
+            Self::BodyWalls => "body_walls",
         }
     }
 
@@ -78,7 +93,7 @@ impl Term {
     pub fn is_of_walls(self) -> bool {
         matches!(
             self,
-            Self::SocialWalls | Self::PressureWalls | Self::ContactWalls
+            Self::SocialWalls | Self::PressureWalls | Self::ContactWalls | Self::BodyWalls
         )
     }
 }
@@ -86,7 +101,7 @@ impl Term {
 impl Terms {
     /// Every term with its value, in the order of the simulation loop. Destructuring makes a forgotten field a
     /// compile error, and so does every `match` on [`Term`].
-    pub fn listed(&self) -> [(Term, Option<Vector>); 10] {
+    pub fn listed(&self) -> [(Term, Option<Vector>); 13] {
         let Self {
             goal,
             walking,
@@ -98,6 +113,9 @@ impl Terms {
             viscosity,
             contact_agents,
             contact_walls,
+            balance,
+            body_agents,
+            body_walls,
         } = *self;
         [
             (Term::Goal, goal),
@@ -110,6 +128,9 @@ impl Terms {
             (Term::Viscosity, viscosity),
             (Term::ContactAgents, contact_agents),
             (Term::ContactWalls, contact_walls),
+            (Term::Balance, balance),
+            (Term::BodyAgents, body_agents),
+            (Term::BodyWalls, body_walls),
         ]
     }
 

@@ -1,6 +1,8 @@
 //! The quantities that a scene needs.
 
+use super::different;
 use crate::engine::agents::Agents;
+use crate::engine::forces::legs::Legs;
 use crate::engine::forces::near::Wanted;
 use crate::engine::forces::walking::{Headings, WalkingLaw};
 use crate::engine::profile::Profile;
@@ -27,6 +29,8 @@ pub struct Needs {
     pub avoidance: Option<f64>,
     /// Some agents choose headings.
     pub headings: bool,
+    /// Some profile has legs.
+    pub legs: bool,
     /// Some agents leave at their goal.
     pub removal: bool,
     /// Agents have preferred speeds of their own, or do not walk all the time.
@@ -46,6 +50,7 @@ impl Needs {
             social: self.social || other.social,
             walking: self.walking || other.walking,
             headings: self.headings || other.headings,
+            legs: self.legs || other.legs,
             avoidance: radii.reduce(f64::max),
             removal: self.removal || other.removal,
             paces: self.paces || other.paces,
@@ -71,6 +76,7 @@ impl Scene {
             social: !self.social_forces().is_empty(),
             walking: !self.walking_laws().is_empty(),
             headings: self.headings().next().is_some(),
+            legs: self.groups.iter().any(|group| group.blend.legs().is_some()),
             avoidance: (self.profiles())
                 .filter_map(|profile| profile.navigation.avoidance_radius())
                 .reduce(f64::max),
@@ -89,6 +95,11 @@ impl Scene {
             .profiles()
             .filter_map(|profile| profile.walking.as_ref());
         laws.filter_map(WalkingLaw::headings)
+    }
+
+    /// The distinct laws of legs.
+    pub fn legs(&self) -> Vec<Legs> {
+        different(self.groups.iter().filter_map(|group| group.blend.legs()))
     }
 
     /// The narrowings of the floor, if a walking law heeds them.

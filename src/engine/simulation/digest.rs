@@ -21,6 +21,12 @@ impl Simulation {
             hasher.update(agents.id[i].to_le_bytes());
             add(&mut hasher, agents.position[i]);
             add(&mut hasher, agents.velocity[i]);
+            if let (Some(&legs), Some(&velocity)) =
+                (agents.legs.get(i), agents.legs_velocity.get(i))
+            {
+                add(&mut hasher, legs);
+                add(&mut hasher, velocity);
+            }
             if has_mean_density {
                 hasher.update(agents.mean_density[i].to_bits().to_le_bytes());
             }

@@ -32,6 +32,7 @@ impl Simulation {
 
     /// Step 1.
     pub(super) fn update_neighbors(&mut self) {
+        self.put_on_legs();
         let stale = match self.fixed.scene.neighbor_lists {
             ListPolicy::Complete => self.derived.neighbors.are_stale(),
             ListPolicy::Coarse => self.crowd.decides(),
@@ -40,7 +41,8 @@ impl Simulation {
             self.sort_agents();
         }
         let needs = &self.fixed.needs;
-        if !(needs.pairs.any() || needs.social || needs.walking || self.density_is_due()) {
+        let reads_lists = needs.pairs.any() || needs.social || needs.walking || needs.legs;
+        if !(reads_lists || self.density_is_due()) {
             return;
         }
         let (fixed, agents, derived) = (&self.fixed, &self.crowd.agents, &mut self.derived);
@@ -263,6 +265,7 @@ impl Simulation {
                 .reduce(|| true, |a, b| a && b)
         });
         std::mem::swap(&mut derived.fields.acceleration, acceleration);
+        self.update_legs();
     }
 }
 

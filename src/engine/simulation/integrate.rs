@@ -27,14 +27,14 @@ impl Simulation {
         match self.fixed.scene.integrator {
             Integrator::SemiImplicit => {
                 self.keep_mean_density();
-                self.move_all(|_, v, a| Motion {
+                self.move_both(|_, v, a| Motion {
                     way: v + a * dt,
                     velocity: v + a * dt,
                 });
             }
             Integrator::ForwardEuler => {
                 self.keep_mean_density();
-                self.move_all(|_, v, a| Motion {
+                self.move_both(|_, v, a| Motion {
                     way: v,
                     velocity: v + a * dt,
                 });
@@ -55,64 +55,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// The velocities of the frame were predicted with the accelerations of the previous frame. Corrects them first
-    /// with the accelerations of this frame.
-    fn move_by_verlet(&mut self, dt: f64) {
-        self.keep_mean_density();
-        let agents = &mut self.crowd.agents;
-        let count = agents.len();
-        agents.acceleration_before.resize(count, None); // for agents that entered since
-        let blocks = (
-            agents.velocity.par_chunks_mut(BLOCK),
-            agents.acceleration_before.par_chunks_mut(BLOCK),
-            self.derived.fields.acceleration.par_chunks(BLOCK),
-        );
-        let blocks = blocks.into_par_iter().with_min_len(TASK);
-        self.stages.time(Stage::Integration, || {
-            blocks.for_each(|(velocities, before, accelerations)| {
-                let states = velocities.iter_mut().zip(before).zip(accelerations);
-                for ((v, before), &a) in states {
-                    if let Some(before) = before.replace(a) {
-                        *v += (a - before) * (0.5 * dt);
-                    }
-                }
-            });
-        });
-        self.move_all(|_, v, a| Motion {
-            way: v + a * (0.5 * dt),
-            velocity: v + a * dt,
-        });
-    }
-
-    fn move_by_midpoint(&mut self, dt: f64) -> Result<(), Fault> {
-        let mut begin = self.crowd.agents.clone();
-        self.keep_mean_density();
-        self.move_agents(0.5 * dt, |_, v, a| Motion {
-            way: v,
-            velocity: v + a * (0.5 * dt),
-        });
-        self.pack();
-        self.update_density_and_pressure(0.5 * dt);
-        self.follow_ways(self.crowd.clock.is_coarse());
-        self.update_preferred_velocity();
-        self.update_acceleration();
-        if let Err(fault) = self.check() {
-            self.crowd.agents = begin;
-            return Err(fault);
-        }
-        let agents = &mut self.crowd.agents;
-        agents.position = begin.position;
-        std::mem::swap(&mut agents.velocity, &mut begin.velocity);
-        let half_way = begin.velocity;
-        self.move_all(|i, v, a| Motion {
-            way: half_way[i],
-            velocity: v + a * dt,
-        });
-        Ok(())
-    }
-
     /// Stores the moving averages of the evaluated frame for the next one.
-    fn keep_mean_density(&mut self) {
+    pub(super) fn keep_mean_density(&mut self) {
         let (agents, fields) = (&mut self.crowd.agents, &mut self.derived.fields);
         if !fields.density.is_empty() {
             std::mem::swap(&mut agents.mean_density, &mut fields.mean_density);
@@ -120,8 +64,17 @@ impl Simulation {
         }
     }
 
+    /// Moves bodies, then legs, by a whole frame.
+    pub(super) fn move_both(
+        &mut self,
+        motion: impl Fn(usize, Vector, Vector) -> Motion + Sync + Copy,
+    ) {
+        self.move_all(motion);
+        self.move_legs(self.crowd.clock.time_step(), motion);
+    }
+
     /// Moves all agents by a whole frame; counts moves stopped by walls and clamped speeds.
-    fn move_all(&mut self, motion: impl Fn(usize, Vector, Vector) -> Motion + Sync) {
+    pub(super) fn move_all(&mut self, motion: impl Fn(usize, Vector, Vector) -> Motion + Sync) {
         let moves = self.move_agents(self.crowd.clock.time_step(), motion);
         let outcome = &mut self.crowd.outcome;
         outcome.moves += self.crowd.agents.len() as u64;
@@ -134,7 +87,7 @@ impl Simulation {
     }
 
     /// Moves all agents by `dt` seconds. `motion_of` maps index, velocity and acceleration to the motion of an agent.
-    fn move_agents(
+    pub(super) fn move_agents(
         &mut self,
         dt: f64,
         motion_of: impl Fn(usize, Vector, Vector) -> Motion + Sync,
@@ -195,7 +148,7 @@ impl Simulation {
         moves
     }
 
-    fn check(&self) -> Result<(), Fault> {
+    pub(super) fn check(&self) -> Result<(), Fault> {
         if self.derived.finite {
             return Ok(());
         }
@@ -218,6 +171,13 @@ impl Simulation {
         // Causes before effects: a non-finite position can make all forces on its agent non-finite.
         None.or_else(|| Some((not_finite(&agents.position)?, "position")))
             .or_else(|| Some((not_finite(&agents.velocity)?, "velocity")))
+            .or_else(|| Some((not_finite(&agents.legs)?, "position of legs")))
+            .or_else(|| {
+                Some((
+                    not_finite(&fields.legs_acceleration)?,
+                    "acceleration of legs",
+                ))
+            })
             .or_else(|| Some((density()?, "density")))
             .or_else(|| Some((not_finite(&fields.acceleration)?, "acceleration")))
             .map(|(i, quantity)| fault(i, quantity))
@@ -266,13 +226,13 @@ impl Crowd {
 /// An upper bound of the relative rounding errors of squared distances.
 const ROUNDING: f64 = 1e-12;
 
-/// The motion of an agent. Both velocities are clamped to s_max.
+/// The motion of an agent or of its legs. Both velocities are clamped to s_max.
 #[derive(Clone, Copy, Default)]
-struct Motion {
+pub(super) struct Motion {
     /// The velocity during the move, m/s.
-    way: Vector,
+    pub(super) way: Vector,
     /// The velocity after it, m/s.
-    velocity: Vector,
+    pub(super) velocity: Vector,
 }
 
 impl Motion {
@@ -348,7 +308,7 @@ struct Limits<'a> {
 
 /// Statistics of moves.
 #[derive(Default)]
-struct Moves {
+pub(super) struct Moves {
     /// The starting points of the moves that were stopped at a wall, meters.
     contained: Vec<Vector>,
     /// The starting points of the moves after which the speed was clamped, meters.

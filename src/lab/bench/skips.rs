@@ -139,6 +139,7 @@ pub fn everything() -> Needs {
         walking: true,
         headings: true,
         avoidance: Some(AVOIDANCE),
+        legs: false, // they are state
         removal: true,
         paces: true,
         directions: true,

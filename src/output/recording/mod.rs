@@ -14,6 +14,7 @@
 //! | `world/legend/{density,speed}` | color bars, static |
 //! | `world/wall_forces` | walls colored by the force on them, if the run measures it |
 //! | `world/waits` | openings colored by the time that the last agent bound for them waits, if ways are chosen by time |
+//! | `world/leans` | lines from the legs of people to their bodies, colored by the lean, if a profile has legs |
 //! | `world/ways/…` | the lengths of the ways to each place and goal as an image, hidden at first |
 //! | `world/agents` | the crowd: positions, radii, density and speed colors, `agent:…` values |
 //! | `world/debug/…` | the debug agents: kernels, hidden regions, wall points, forces, ways |
@@ -61,7 +62,7 @@ use crate::output::scenery;
 use debug::focus::Focus;
 use debug::follow::{Follow, Moment};
 use debug::{arrows, layers, moment};
-use frame::colored_lines::{self, WAITS, WALL_FORCES};
+use frame::colored_lines::{self, ColoredLines, LEANS, WAITS, WALL_FORCES};
 use frame::{Snapshot, stats};
 use layout::{Content, Kind};
 use scene::{obstacles, ways};
@@ -104,15 +105,19 @@ impl Recorder {
         let follow = Follow::new(&options.debug);
         let names = follow.names();
         let scene = simulation.scene();
+        let layers: [(&'static ColoredLines, bool); 3] = [
+            (&WAITS, scene.by_time() && scene.rooms().is_some()),
+            (&WALL_FORCES, options.body_mass.is_some()),
+            (&LEANS, simulation.needs().legs),
+        ];
+        let lines = layers.into_iter().filter(|(_, has)| *has);
+        let lines: Vec<_> = lines.map(|(layer, _)| layer).collect();
         let log_own = |stream: &RecordingStream| {
             let document = text::of_run(stream, scene, options)?;
             scene::log(stream, simulation, options)?;
             stats::log_places(stream, scene)?;
-            if options.body_mass.is_some() {
-                WALL_FORCES.log_style(stream)?;
-            }
-            if scene.by_time() && scene.rooms().is_some() {
-                WAITS.log_style(stream)?;
+            for layer in &lines {
+                layer.log_style(stream)?;
             }
             let terms = arrows::acting(scene);
             let focuses = names.iter();
@@ -128,8 +133,7 @@ impl Recorder {
             has_stages: scenery::has_stages(scene),
             has_waiting: stats::has_waiting(scene),
             fields: ways::entities(scene),
-            has_wall_forces: options.body_mass.is_some(),
-            has_waits: scene.by_time() && scene.rooms().is_some(),
+            lines: lines.clone(),
             followed: names.clone(),
             ..Content::new(kind, obstacles::has_outside(scene.walls.obstacles()))
         };
@@ -166,7 +170,8 @@ impl Recorder {
         let mut snapshot = Snapshot::of(simulation, &options.debug, &self.follow.ids());
         snapshot.ms_per_frame = Some(ms_per_frame);
         if let (Some(outlines), Some(mass)) = (&self.outlines, options.body_mass) {
-            snapshot.wall_forces = Some(colored_lines::wall_forces(outlines, simulation, mass));
+            let parts = colored_lines::wall_forces(outlines, simulation, mass);
+            snapshot.lines.push((&WALL_FORCES, parts));
         }
         snapshot.events = self.events.new_lines(simulation);
         snapshot.evacuated = Some(self.events.evacuated);

@@ -9,7 +9,6 @@ use rerun::RecordingStream;
 use super::debug::focus::Focus;
 use super::debug::layers::Layer;
 use super::error::{Cause, GONE, RecordingError};
-use super::frame::colored_lines::{WAITS, WALL_FORCES};
 use super::frame::crowd::{self, Crowd, Maps};
 use super::frame::events;
 use super::frame::{Snapshot, set_time, stats};
@@ -167,11 +166,8 @@ fn write_all(
         events::log(stream, &snapshot.events)?;
         set_time(stream, snapshot.frame, snapshot.time);
         crowd.log(stream, &snapshot)?;
-        if let Some(parts) = &snapshot.wall_forces {
-            WALL_FORCES.log(stream, parts)?;
-        }
-        if let Some(parts) = &snapshot.waits {
-            WAITS.log(stream, parts)?;
+        for (layer, parts) in &snapshot.lines {
+            layer.log(stream, parts)?;
         }
         for layer in &mut debug.layers {
             layer.log(stream, &snapshot.open)?;

@@ -61,9 +61,12 @@ impl Columns {
         }
     }
 
-    /// The names of the columns, and their values.
+    /// The names of the columns, and their values; without columns of legs if no agent has legs.
     pub fn into_values(self) -> impl Iterator<Item = (&'static str, Column)> {
-        let kept = self.kept.into_iter();
+        let kept = self
+            .kept
+            .into_iter()
+            .filter(|(.., column)| !column.is_void());
         kept.map(|(_, name, column)| (name, column))
     }
 }
@@ -79,6 +82,14 @@ impl Column {
                 names: Vec::new(),
             },
         }
+    }
+
+    /// Whether it has rows, and no value in any of them.
+    fn is_void(&self) -> bool {
+        let Self::Numbers(values) = self else {
+            return false;
+        };
+        !values.is_empty() && values.iter().all(|value| value.is_nan())
     }
 
     fn push(&mut self, cell: Cell<'_>) {

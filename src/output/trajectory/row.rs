@@ -69,6 +69,21 @@ pub struct Row<'a> {
     pub acc_x: f64,
     /// Its y component.
     pub acc_y: f64,
+    /// y_i, the position of the legs, meters; `None`, and no column, if no profile has legs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub legs_x: Option<f64>,
+    /// Its y component.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub legs_y: Option<f64>,
+    /// w_i, the velocity of the legs, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub legs_vel_x: Option<f64>,
+    /// Its y component.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub legs_vel_y: Option<f64>,
+    /// |r_i − y_i|, meters.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lean: Option<f64>,
 }
 
 /// The value of a field.
@@ -76,7 +91,7 @@ pub struct Row<'a> {
 pub enum Cell<'a> {
     /// A whole number.
     Count(u64),
-    /// A number.
+    /// A number; NaN if there is none.
     Number(f64),
     /// A name; `None` if there is none.
     Name(Option<&'a str>),
@@ -84,8 +99,9 @@ pub enum Cell<'a> {
 
 impl<'a> Row<'a> {
     /// The name, the meaning with its unit, and the value of each field.
-    pub fn cells(&self) -> [(&'static str, &'static str, Cell<'a>); 27] {
+    pub fn cells(&self) -> [(&'static str, &'static str, Cell<'a>); 32] {
         use Cell::{Count, Name, Number};
+        let of_legs = |value: Option<f64>| Number(value.unwrap_or(f64::NAN));
         [
             (
                 "frame",
@@ -162,6 +178,23 @@ impl<'a> Row<'a> {
             ),
             ("acc_x", "acceleration, m/s²", Number(self.acc_x)),
             ("acc_y", "acceleration, m/s²", Number(self.acc_y)),
+            ("legs_x", "position of the legs, m", of_legs(self.legs_x)),
+            ("legs_y", "position of the legs, m", of_legs(self.legs_y)),
+            (
+                "legs_vel_x",
+                "velocity of the legs, m/s",
+                of_legs(self.legs_vel_x),
+            ),
+            (
+                "legs_vel_y",
+                "velocity of the legs, m/s",
+                of_legs(self.legs_vel_y),
+            ),
+            (
+                "lean",
+                "distance from the legs to the body, m",
+                of_legs(self.lean),
+            ),
         ]
     }
 }
@@ -185,6 +218,7 @@ fn row(simulation: &Simulation, number: u64, i: usize) -> Row<'_> {
     let wall_gradient = fields.wall_gradient[i];
     let preferred_velocity = fields.preferred_velocity[i];
     let acceleration = fields.acceleration[i];
+    let (legs, legs_velocity) = (agents.legs.get(i), agents.legs_velocity.get(i));
     Row {
         frame: number,
         time: frame.clock.time(),
@@ -213,6 +247,11 @@ fn row(simulation: &Simulation, number: u64, i: usize) -> Row<'_> {
         preferred_vel_y: preferred_velocity.y,
         acc_x: acceleration.x,
         acc_y: acceleration.y,
+        legs_x: legs.map(|legs| legs.x),
+        legs_y: legs.map(|legs| legs.y),
+        legs_vel_x: legs_velocity.map(|velocity| velocity.x),
+        legs_vel_y: legs_velocity.map(|velocity| velocity.y),
+        lean: legs.map(|_| agents.lean(i).norm()),
     }
 }
 

@@ -64,6 +64,7 @@ impl Parameters {
                 contact_scale: self.contact_scale.unwrap_or(1.0),
                 wall_contact_scale: self.wall_contact_scale.unwrap_or(1.0),
             },
+            legs: self.legs.unwrap_or(false).then(|| self.legs_law()),
         }
     }
 }

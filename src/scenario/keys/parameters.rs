@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::engine::density::SphParameters;
 use crate::engine::forces::contact::Contact;
 use crate::engine::forces::goal::GoalForce;
+use crate::engine::forces::legs::Legs;
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::forces::viscosity::Viscosity;
@@ -156,6 +157,34 @@ pub struct Parameters {
     /// [`Rvo::candidates`].
     #[schemars(range(min = 1, max = 1e6))]
     pub candidates: Option<u32>,
+    /// Whether people have legs under their bodies, and sway: the law of Chatagnon and others (2026). All profiles of a
+    /// blend have the same legs.
+    #[schemars(extend("default" = false))]
+    pub legs: Option<bool>,
+    /// [`Legs::unbalancing_rate`].
+    #[schemars(range(min = 0, max = STRONGEST))]
+    pub unbalancing_rate: Option<f64>,
+    /// [`Legs::balancing_rate`].
+    #[schemars(range(min = 0, max = STRONGEST))]
+    pub balancing_rate: Option<f64>,
+    /// [`Legs::balance_speed`].
+    #[schemars(range(min = 0, max = 100))]
+    pub balance_speed: Option<f64>,
+    /// [`Legs::legs_strength`].
+    #[schemars(range(min = 0, max = STRONGEST))]
+    pub legs_strength: Option<f64>,
+    /// [`Legs::body_range`].
+    #[schemars(range(min = 0.01, max = FARTHEST))]
+    pub body_range: Option<f64>,
+    /// [`Legs::leg_range`].
+    #[schemars(range(min = 0.01, max = FARTHEST))]
+    pub leg_range: Option<f64>,
+    /// [`Legs::legs_reach`].
+    #[schemars(range(min = 0.01, max = FARTHEST))]
+    pub legs_reach: Option<f64>,
+    /// [`Legs::lean_limit`].
+    #[schemars(range(min = 0.01, max = 2))]
+    pub lean_limit: Option<f64>,
     /// [`Viscosity::coefficient`].
     #[schemars(range(min = 0, max = STRONGEST), extend("default" = 0))]
     pub viscosity: Option<f64>,
@@ -202,6 +231,7 @@ fn describe(schema: &mut Schema) {
         DensityAhead::json_schema,
         Drag::json_schema,
         Rvo::json_schema,
+        Legs::json_schema,
         Viscosity::json_schema,
         Contact::json_schema,
         SphParameters::json_schema,
@@ -279,6 +309,15 @@ impl Parameters {
             drag_from_density: finite(self.drag_from_density).or(fallback.drag_from_density),
             collision_weight: finite(self.collision_weight).or(fallback.collision_weight),
             candidates: self.candidates.or(fallback.candidates),
+            legs: self.legs.or(fallback.legs),
+            unbalancing_rate: finite(self.unbalancing_rate).or(fallback.unbalancing_rate),
+            balancing_rate: finite(self.balancing_rate).or(fallback.balancing_rate),
+            balance_speed: finite(self.balance_speed).or(fallback.balance_speed),
+            legs_strength: finite(self.legs_strength).or(fallback.legs_strength),
+            body_range: finite(self.body_range).or(fallback.body_range),
+            leg_range: finite(self.leg_range).or(fallback.leg_range),
+            legs_reach: finite(self.legs_reach).or(fallback.legs_reach),
+            lean_limit: finite(self.lean_limit).or(fallback.lean_limit),
             viscosity: finite(self.viscosity).or(fallback.viscosity),
             agent_stiffness: finite(self.agent_stiffness).or(fallback.agent_stiffness),
             wall_stiffness: finite(self.wall_stiffness).or(fallback.wall_stiffness),

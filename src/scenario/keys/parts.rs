@@ -3,6 +3,7 @@
 use super::parameters::{Parameters, finite};
 use crate::engine::density::SphParameters;
 use crate::engine::forces::goal::GoalForce;
+use crate::engine::forces::legs::Legs;
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::forces::walking::headings::Gap;
@@ -52,6 +53,21 @@ impl Parameters {
             collision_weight: finite(self.collision_weight).unwrap_or(paper.collision_weight),
             candidates: self.candidates.unwrap_or(paper.candidates),
             avoidance_radius: finite(self.avoidance_radius).unwrap_or(paper.avoidance_radius),
+        }
+    }
+
+    /// The legs under a body.
+    pub fn legs_law(&self) -> Legs {
+        let paper = Legs::default();
+        Legs {
+            unbalancing_rate: finite(self.unbalancing_rate).unwrap_or(paper.unbalancing_rate),
+            balancing_rate: finite(self.balancing_rate).unwrap_or(paper.balancing_rate),
+            balance_speed: finite(self.balance_speed).unwrap_or(paper.balance_speed),
+            legs_strength: finite(self.legs_strength).unwrap_or(paper.legs_strength),
+            body_range: finite(self.body_range).unwrap_or(paper.body_range),
+            leg_range: finite(self.leg_range).unwrap_or(paper.leg_range),
+            legs_reach: finite(self.legs_reach).unwrap_or(paper.legs_reach),
+            lean_limit: finite(self.lean_limit).unwrap_or(paper.lean_limit),
         }
     }
 

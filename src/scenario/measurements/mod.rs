@@ -30,6 +30,7 @@ mod service_levels;
 mod snapshot;
 mod speed_by_density;
 mod stuck;
+mod unbalanced;
 mod walks;
 mod wall_forces;
 mod wave;
@@ -65,6 +66,7 @@ pub use service_levels::ServiceLevels;
 pub use snapshot::{Snapshot, SnapshotAt};
 pub use speed_by_density::SpeedByDensity;
 pub use stuck::{HEADWAY, STUCK_AFTER, StuckGroup};
+pub use unbalanced::Unbalanced;
 pub use walks::{Walk, Walks};
 pub use wall_forces::WallForces;
 pub use wave::{Wave, WaveData};
@@ -192,6 +194,8 @@ pub enum Measurement {
     ServiceLevels(ServiceLevels),
     /// Density times variance of the velocities.
     CrowdPressure(CrowdPressure),
+    /// People whose lean has reached its limit.
+    Unbalanced(Unbalanced),
     /// Forces on people, N.
     BodyForces(BodyForces),
     /// Forces on walls, N/m.
@@ -227,6 +231,7 @@ impl Measurement {
             Self::Exposure(keys) => started(keys),
             Self::ServiceLevels(keys) => started(keys),
             Self::CrowdPressure(keys) => started(keys),
+            Self::Unbalanced(keys) => started(keys),
             Self::BodyForces(keys) => started(keys),
             Self::WallForces(keys) => started(keys),
             Self::FrameTime(keys) => started(keys),

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::window::{Samples, Window};
 use super::{Measure, Observed, Quantity};
-use crate::analysis::oscillation::Oscillation as Found;
+use crate::analysis::oscillation::{Oscillation as Found, correlation_length};
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -20,7 +20,7 @@ const MOST_BOXES: usize = 10_000;
 
 /// The mean velocities of the agents in boxes, sampled at equal times, and their spectrum averaged over the boxes: the
 /// angular frequency of its peak, the parts of the power around the peak and in a band, the root mean square velocity,
-/// and the sense of rotation (spin) in each box.
+/// the sense of rotation (spin) in each box, and the distance over which boxes move together.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Oscillation {
@@ -94,8 +94,8 @@ impl Oscillation {
         [size.x, size.y].map(|length| (length / self.box_size).round().max(1.0) as usize)
     }
 
-    /// The boxes that were never empty.
-    fn found(&self, seen: &Seen) -> Option<Found> {
+    /// The velocities of each box; `None` if it was empty at some time.
+    fn series(&self, seen: &Seen) -> Vec<Option<Vec<[f64; 2]>>> {
         let [columns, rows] = self.boxes(&self.region.into());
         let boxes = columns * rows;
         let series = |k: usize| -> Option<Vec<[f64; 2]>> {
@@ -106,8 +106,20 @@ impl Oscillation {
                 .copied()
                 .collect()
         };
-        let series: Vec<_> = (0..boxes).filter_map(series).collect();
+        (0..boxes).map(series).collect()
+    }
+
+    fn found(&self, seen: &Seen) -> Option<Found> {
+        let series: Vec<_> = self.series(seen).into_iter().flatten().collect();
         Found::of(&series, seen.every)
+    }
+
+    fn correlation_length(&self, seen: &Seen) -> Option<f64> {
+        let region: Region = self.region.into();
+        let [columns, rows] = self.boxes(&region);
+        let size = region.max - region.min;
+        let sides = [size.x / columns as f64, size.y / rows as f64];
+        correlation_length(&self.series(seen), columns, sides)
     }
 }
 
@@ -165,6 +177,11 @@ impl Measure for Oscillation {
                 "",
                 "root mean square of the spin over the boxes",
             ),
+            (
+                "correlation_m",
+                "m",
+                "distance at which the correlation of the boxes' velocities falls below 1/e",
+            ),
         ];
         Quantity::all(self.name(), &values)
     }
@@ -212,6 +229,7 @@ impl Measure for Oscillation {
             Some(found.spectrum.power().sqrt()),
             mean(|spin| *spin),
             mean(|spin| spin * spin).map(f64::sqrt),
+            self.correlation_length(seen),
         ]
     }
 

@@ -1,4 +1,5 @@
-//! Lines colored by a value, with the time series of the largest one: the force on walls, the waits before openings.
+//! Lines colored by a value, with the time series of the largest one: the force on walls, the waits before openings,
+//! the leans of people.
 
 use std::sync::LazyLock;
 
@@ -6,7 +7,7 @@ use rerun::{LineStrips2D, RecordingStream, Scalars};
 
 use crate::analysis::wall_forces::Outlines;
 use crate::engine::simulation::Simulation;
-use crate::output::colors::{ColorMap, Rgb, WAIT, WALL_FORCE};
+use crate::output::colors::{ColorMap, LEAN, Rgb, WAIT, WALL_FORCE};
 use crate::output::recording::draw::{Point, color, log_series, px, xy};
 use crate::output::recording::error::Cause;
 
@@ -14,13 +15,18 @@ use crate::output::recording::error::Cause;
 pub type Part = ([Point; 2], f32);
 
 /// A layer of lines.
+#[derive(Debug)]
 pub struct ColoredLines {
     /// Its entity.
     pub entity: &'static str,
     /// The time series of the largest value, and its name.
     pub series: &'static str,
     name: &'static str,
+    /// The title of its plot.
+    pub title: &'static str,
     rgb: Rgb,
+    /// Half the width of the lines, pixels.
+    width: f32,
     map: &'static LazyLock<ColorMap>,
 }
 
@@ -29,7 +35,9 @@ pub static WALL_FORCES: ColoredLines = ColoredLines {
     entity: "world/wall_forces",
     series: "stats/wall_forces",
     name: "largest force on 1 m of wall [N/m]",
+    title: "Force on walls",
     rgb: [240, 90, 60],
+    width: 3.0,
     map: &WALL_FORCE,
 };
 
@@ -38,8 +46,21 @@ pub static WAITS: ColoredLines = ColoredLines {
     entity: "world/waits",
     series: "stats/waits",
     name: "longest wait before an opening [s]",
+    title: "Waits before openings",
     rgb: [230, 160, 60],
+    width: 3.0,
     map: &WAIT,
+};
+
+/// Lines from legs to bodies, colored by the lean, meters.
+pub static LEANS: ColoredLines = ColoredLines {
+    entity: "world/leans",
+    series: "stats/leans",
+    name: "longest lean [m]",
+    title: "Leans",
+    rgb: [200, 120, 200],
+    width: 1.5,
+    map: &LEAN,
 };
 
 /// The parts of walls with a force on them in an evaluated frame.
@@ -47,6 +68,19 @@ pub fn wall_forces(outlines: &Outlines, simulation: &Simulation, body_mass: f64)
     let pressed = outlines.pressed(simulation, body_mass);
     let parts = pressed.map(|(ends, force)| (ends.map(xy), force as f32));
     parts.collect()
+}
+
+/// The leans of all agents that have legs; `None` if no profile has legs.
+pub fn leans(simulation: &Simulation) -> Option<Vec<Part>> {
+    if !simulation.needs().legs {
+        return None;
+    }
+    let agents = simulation.frame().agents;
+    let part = |i: usize| {
+        let ends = [*agents.legs.get(i)?, agents.position[i]];
+        Some((ends.map(xy), agents.lean(i).norm() as f32))
+    };
+    Some(agents.present().filter_map(part).collect())
 }
 
 /// The openings before which agents wait; `None` if they do not choose ways by time.
@@ -61,11 +95,20 @@ pub fn waits(simulation: &Simulation) -> Option<Vec<Part>> {
     Some(parts.collect())
 }
 
+/// Layers have different entities.
+impl PartialEq for ColoredLines {
+    fn eq(&self, other: &Self) -> bool {
+        self.entity == other.entity
+    }
+}
+
+impl Eq for ColoredLines {}
+
 impl ColoredLines {
     /// Logs the style of the layer and of its time series.
     pub fn log_style(&self, stream: &RecordingStream) -> Result<(), Cause> {
         let style = LineStrips2D::update_fields()
-            .with_radii(px(3.0))
+            .with_radii(px(self.width))
             .with_draw_order(7.0);
         stream.log_static(self.entity, &style)?;
         log_series(stream, self.series, self.name, Some(self.rgb))

@@ -14,7 +14,7 @@ use crate::engine::simulation::Simulation;
 use crate::output::colors::Rgb;
 use crate::output::events::Line;
 use crate::output::scenery::stage_color;
-use colored_lines::Part;
+use colored_lines::{ColoredLines, LEANS, Part, WAITS};
 
 /// The timelines.
 pub const FRAME: &str = "frame";
@@ -49,10 +49,8 @@ pub struct Snapshot {
     pub waiting: Vec<u32>,
     /// The log of events since the last snapshot.
     pub events: Vec<Line>,
-    /// The parts of walls with a force on them; `None` if they are not colored.
-    pub wall_forces: Option<Vec<Part>>,
-    /// The openings before which agents wait; `None` if they do not choose ways by time.
-    pub waits: Option<Vec<Part>>,
+    /// The layers of colored lines.
+    pub lines: Vec<(&'static ColoredLines, Vec<Part>)>,
     /// The debug agents.
     pub open: Vec<Open>,
     /// The places of the followed agents among the debug agents; `None` for absent ones.
@@ -77,6 +75,9 @@ impl Snapshot {
             open.binary_search_by_key(&id, |agent| agent.breakdown.id)
                 .ok()
         };
+        let waits = colored_lines::waits(simulation).map(|parts| (&WAITS, parts));
+        let leans = colored_lines::leans(simulation).map(|parts| (&LEANS, parts));
+        let lines = [waits, leans];
         Self {
             followed: followed.iter().map(|id| id.and_then(place)).collect(),
             frame: frame.clock.frame().cast_signed(),
@@ -91,7 +92,7 @@ impl Snapshot {
             pressures: numbers(&fields.pressure),
             stages: stages.collect(),
             places: stats::of_places(simulation),
-            waits: colored_lines::waits(simulation),
+            lines: lines.into_iter().flatten().collect(),
             open,
             waiting: simulation.backlogs().map(|one| one.waiting).collect(),
             ..Self::default()

@@ -13,7 +13,7 @@ use rerun::external::re_log_types::TimeInt;
 
 use super::arrangement::Arrangement;
 use super::debug::{focus, moment};
-use super::frame::colored_lines::{ColoredLines, WAITS, WALL_FORCES};
+use super::frame::colored_lines::ColoredLines;
 use super::frame::{SIM_TIME, crowd, events, stats};
 use super::options::RecordingOptions;
 use super::scene::bars;
@@ -62,10 +62,8 @@ pub struct Content {
     pub has_waiting: bool,
     /// The entities with the lengths of ways, which are hidden at first.
     pub fields: Vec<EntityPath>,
-    /// Whether walls are colored by the force on them.
-    pub has_wall_forces: bool,
-    /// Whether openings are colored by the waits before them.
-    pub has_waits: bool,
+    /// The layers of colored lines.
+    pub lines: Vec<&'static ColoredLines>,
     /// Whether the walkable area has an outside.
     pub has_outside: bool,
     /// The names of the followed agents.
@@ -81,8 +79,7 @@ impl Content {
             has_stages: false,
             has_waiting: false,
             fields: Vec::new(),
-            has_wall_forces: false,
-            has_waits: false,
+            lines: Vec::new(),
             has_outside,
             followed: Vec::new(),
         }
@@ -273,10 +270,9 @@ fn plots(content: &Content) -> ContainerLike {
     };
     let places = content.has_journeys.then(places);
     let time = plot("Computing time", "/stats/time");
-    let series = |of: &ColoredLines| format!("/{}", of.series);
-    let forces = (content.has_wall_forces).then(|| plot("Force on walls", &series(&WALL_FORCES)));
-    let waits = (content.has_waits).then(|| plot("Waits before openings", &series(&WAITS)));
-    let first = places.into_iter().chain(waits).chain(forces);
+    let lines = content.lines.iter();
+    let lines = lines.map(|of| plot(of.title, &format!("/{}", of.series)));
+    let first = places.into_iter().chain(lines);
     Tabs::new(first.chain([motion, crowd, time])).into()
 }
 

@@ -14,7 +14,6 @@ use super::Content;
 use crate::engine::scene::Region;
 use crate::output::colors::Rgb;
 use crate::output::recording::draw::color;
-use crate::output::recording::frame::colored_lines::{WAITS, WALL_FORCES};
 use crate::output::recording::frame::crowd;
 use crate::output::recording::scene::obstacles;
 
@@ -41,8 +40,8 @@ impl<'a> View<'a> {
             format!("+ /{}", crowd::ENTITY),
         ];
         contents.extend((!content.fields.is_empty()).then(|| "+ /world/ways/**".to_owned()));
-        contents.extend((content.has_wall_forces).then(|| format!("+ /{}", WALL_FORCES.entity)));
-        contents.extend((content.has_waits).then(|| format!("+ /{}", WAITS.entity)));
+        let lines = content.lines.iter();
+        contents.extend(lines.map(|of| format!("+ /{}", of.entity)));
         Self {
             name: name.to_owned(),
             origin: "/".to_owned(),

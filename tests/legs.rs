@@ -1,0 +1,353 @@
+//! The law of legs under bodies: against an independent implementation, and against closed forms.
+
+use std::sync::Arc;
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use sandbox::engine::agents::Agents;
+use sandbox::engine::clock::Clock;
+use sandbox::engine::forces::own::Force;
+use sandbox::engine::frame::Frame;
+use sandbox::engine::math::Vector;
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::Parameters;
+
+use crate::common::legs::{alone, standing};
+use crate::common::{blend_with, block, person, rectangle, run, scene, vector, walker};
+
+fn legs_of(agents: &Agents, id: u32) -> (Vector, Vector) {
+    let i = agents.index_of(id).unwrap();
+    (agents.legs[i], agents.legs_velocity[i])
+}
+
+/// A person as the law has it.
+#[derive(Clone, Copy)]
+struct Person {
+    mass: f64,
+    body: [Vector; 2],
+    legs: [Vector; 2],
+}
+
+/// The obstacle beside the crowd.
+const BLOCK: [[f64; 2]; 2] = [[2.5, 4.0], [0.5, 2.0]];
+
+/// The law, written from its equations: λᵤ, λ_b, v_s, A, B, B_l, R and the limit of the lean.
+struct Law {
+    falling: f64,
+    recovery: f64,
+    speed: f64,
+    strength: f64,
+    ranges: [f64; 2],
+    reach: f64,
+    limit: f64,
+    /// K^goal/τ, 1/s.
+    friction: f64,
+    /// Where all people want to go, and how fast, m/s.
+    goal: (Vector, f64),
+}
+
+impl Law {
+    fn repulsion(&self, from: Vector, range: f64) -> Vector {
+        let d = from.norm();
+        if d >= self.reach || d == 0.0 {
+            return Vector::zeros();
+        }
+        from / d * self.strength * ((-d / range).exp() - (-self.reach / range).exp())
+    }
+
+    /// From the nearest point of the obstacle, for a point outside of it.
+    fn from_block(p: Vector) -> Vector {
+        let near = |k: usize| p[k].clamp(BLOCK[k][0], BLOCK[k][1]);
+        p - vector(near(0), near(1))
+    }
+
+    fn next(&self, people: &[Person], k: usize, dt: f64) -> Person {
+        let Person { mass, body, legs } = people[k];
+        let ([r, v], [y, w]) = (body, legs);
+        let lean = r - y;
+        let e = if lean == Vector::zeros() {
+            lean
+        } else {
+            lean / lean.norm()
+        };
+        let wish = (self.goal.0 - r).normalize() * self.goal.1;
+        let walk = wish * (v.dot(&wish) / wish.dot(&wish)).clamp(0.0, 1.0);
+        let mut a =
+            (wish - v) * (self.friction / mass) + (e * self.speed + walk - v) * self.falling;
+        let mut b = (e * self.speed + walk - w) * self.recovery;
+        for (j, other) in people.iter().enumerate() {
+            let between = r - other.body[0];
+            if j != k && between.norm() < self.reach {
+                a += self.repulsion(between, self.ranges[0]) / mass;
+                b += self.repulsion(y - other.legs[0], self.ranges[1]) / mass;
+            }
+        }
+        if Self::from_block(r).norm() < self.reach {
+            a += self.repulsion(Self::from_block(r), self.ranges[0]) / mass;
+            b += self.repulsion(Self::from_block(y), self.ranges[1]) / mass;
+        }
+        let (v, mut w) = (v + a * dt, w + b * dt);
+        let (r, mut y) = (r + v * dt, y + w * dt);
+        let lean = r - y;
+        if lean.norm() > self.limit {
+            let e = lean / lean.norm();
+            y = r - e * self.limit;
+            w += e * (v - w).dot(&e).max(0.0);
+        }
+        Person {
+            mass,
+            body: [r, v],
+            legs: [y, w],
+        }
+    }
+}
+
+#[test]
+fn the_law_agrees_with_an_independent_implementation() {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let parameters = Parameters {
+        unbalancing_rate: Some(0.7),
+        balancing_rate: Some(0.9),
+        balance_speed: Some(0.8),
+        legs_strength: Some(6.0),
+        body_range: Some(0.4),
+        leg_range: Some(0.25),
+        legs_reach: Some(1.3),
+        lean_limit: Some(0.2),
+        ..alone(0.6)
+    };
+    let goal = vector(9.0, 1.0);
+    let mut scene = scene(
+        vec![rectangle(BLOCK[0], BLOCK[1])],
+        blend_with("sph", &parameters),
+    );
+    scene.preferred_speed = 0.4;
+    scene.max_speed = 100.0;
+    scene.agents = block(vector(0.2, 0.2), 5, 8, 0.45, goal);
+    for agent in &mut scene.agents {
+        agent.velocity = vector(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0));
+        agent.mass = Some(rng.random_range(0.7..1.4));
+    }
+    let law = Law {
+        falling: 0.7,
+        recovery: 0.9,
+        speed: 0.8,
+        strength: 6.0,
+        ranges: [0.4, 0.25],
+        reach: 1.3,
+        limit: 0.2,
+        friction: 0.6,
+        goal: (goal, 0.4),
+    };
+    let dt = scene.clock.time_step();
+    let mut simulation = Simulation::new(scene).unwrap();
+    run(&mut simulation, 1);
+    let people = |simulation: &Simulation| -> Vec<Person> {
+        let agents = simulation.frame().agents;
+        let of = |id: u32| {
+            let i = agents.index_of(id).unwrap();
+            Person {
+                mass: agents.mass[i],
+                body: [agents.position[i], agents.velocity[i]],
+                legs: legs_of(agents, id).into(),
+            }
+        };
+        (0..40).map(of).collect()
+    };
+    let (mut limited, mut stopped) = (0, 0);
+    for _ in 0..200 {
+        let before = people(&simulation);
+        let contained = simulation.outcome().contained.count;
+        run(&mut simulation, 1);
+        let after = people(&simulation);
+        if simulation.outcome().contained.count > contained {
+            stopped += 1;
+            continue; // the independent implementation has no walls that stop moves
+        }
+        for (k, found) in after.iter().enumerate() {
+            let expected = law.next(&before, k, dt);
+            let behind_a_wall = Law::from_block(found.legs[0]).norm() < 1e-5;
+            if behind_a_wall {
+                continue;
+            }
+            let pairs =
+                (found.body.iter().zip(expected.body)).chain(found.legs.iter().zip(expected.legs));
+            for (found, expected) in pairs {
+                let off = (found - expected).norm();
+                assert!(off < 1e-9, "person {k}: {found} instead of {expected}");
+            }
+            let lean = (found.body[0] - found.legs[0]).norm();
+            limited += usize::from(lean > 0.2 - 1e-9);
+        }
+    }
+    assert!(limited > 10 && stopped < 50, "{limited}, {stopped}");
+}
+
+#[test]
+fn the_lean_of_a_lone_person_follows_its_closed_form() {
+    // λᵤ, λ_b, v_s and λ; the body is pushed, and the legs run after it.
+    let [falling, recovery, speed, friction] = [0.5, 1.0, 1.0, 0.5];
+    let pushed = 1.0;
+    let lean_at = |t: f64| {
+        let all = falling + friction;
+        let last = falling * speed / all;
+        let body = last * t + (pushed - last) * (1.0 - (-all * t).exp()) / all;
+        body - speed * (t - (1.0 - (-recovery * t).exp()) / recovery)
+    };
+    let off = |dt: f64, at: f64| {
+        let agents = vec![walker(
+            Vector::zeros(),
+            vector(pushed, 0.0),
+            Vector::zeros(),
+        )];
+        let mut scene = standing(alone(friction), agents);
+        scene.clock = Clock::new(dt, 1);
+        let mut simulation = Simulation::new(scene).unwrap();
+        run(&mut simulation, (at / dt).round() as u64);
+        let lean = simulation.frame().agents.lean(0);
+        assert_eq!(lean.y, 0.0);
+        lean.x - lean_at(at)
+    };
+    for at in [0.5, 1.0, 1.6] {
+        assert!(lean_at(at) > 0.1, "{}", lean_at(at));
+        let [coarse, fine] = [0.004, 0.002].map(|dt| off(dt, at));
+        assert!(coarse.abs() < 3e-3, "{at} s: {coarse} m");
+        let order = coarse / fine;
+        assert!((order - 2.0).abs() < 0.05, "{at} s: first order, {order}");
+    }
+    // The legs have caught up, and the person stays upright.
+    let end = (0..4000)
+        .map(|k| f64::from(k) * 1e-3 + 1.0)
+        .find(|&t| lean_at(t) < 0.0);
+    let upright = off(0.002, end.unwrap() + 4.0) + lean_at(end.unwrap() + 4.0);
+    assert!(upright.abs() < 0.05, "{upright} m");
+}
+
+/// Pushes all agents to the side in the first second.
+#[derive(Debug)]
+struct Kick;
+
+impl Force for Kick {
+    fn name(&self) -> &str {
+        "kick"
+    }
+
+    fn stiffness(&self) -> f64 {
+        0.0
+    }
+
+    fn friction(&self) -> f64 {
+        0.0
+    }
+
+    fn acceleration(&self, frame: &Frame, _: usize) -> Vector {
+        match frame.clock.time() < 1.0 {
+            true => vector(0.0, 0.2),
+            false => Vector::zeros(),
+        }
+    }
+}
+
+#[test]
+fn a_lone_person_with_slow_legs_turns_at_the_frequency_of_the_closed_form() {
+    let [falling, recovery, speed, friction] = [0.2, 0.3, 0.5, 0.5];
+    let parameters = Parameters {
+        unbalancing_rate: Some(falling),
+        balancing_rate: Some(recovery),
+        balance_speed: Some(speed),
+        ..alone(friction)
+    };
+    let agents = vec![walker(Vector::zeros(), vector(0.3, 0.0), Vector::zeros())];
+    let mut scene = standing(parameters, agents);
+    scene.clock = Clock::new(0.01, 1);
+    scene.own_forces.push(Arc::new(Kick));
+    let mut simulation = Simulation::new(scene).unwrap();
+    run(&mut simulation, 30_000);
+    // Body and legs are circles of the frequency ω, in phase with the direction of the lean.
+    let all = falling + friction;
+    let omega = recovery * (all * friction / (falling * all - recovery * recovery)).sqrt();
+    let square = omega * omega;
+    let lean = speed * (recovery / (square + recovery * recovery) - falling / (square + all * all));
+    let (mut turned, mut leans, steps) = (0.0, 0.0, 400);
+    for _ in 0..steps {
+        let before = simulation.frame().agents.lean(0);
+        run(&mut simulation, 10);
+        let after = simulation.frame().agents.lean(0);
+        turned += before.perp(&after).atan2(before.dot(&after));
+        leans += after.norm();
+    }
+    let found = f64::abs(turned) / (0.1 * f64::from(steps));
+    let mean = leans / f64::from(steps);
+    assert!(
+        (found / omega - 1.0).abs() < 0.01,
+        "{found} instead of {omega} rad/s"
+    );
+    assert!(
+        (mean / lean - 1.0).abs() < 0.02,
+        "{} instead of {lean} m",
+        mean
+    );
+}
+
+#[test]
+fn momentum_decays_with_the_friction_of_bodies_and_of_legs() {
+    // Without a speed of balance, only frictions change the momentum; legs begin at rest and repel each other.
+    let parameters = Parameters {
+        balance_speed: Some(0.0),
+        unbalancing_rate: Some(0.3),
+        legs_strength: Some(0.2),
+        lean_limit: Some(2.0),
+        ..alone(0.0)
+    };
+    let mut agents = block(Vector::zeros(), 7, 7, 0.4, vector(9.0, 0.0));
+    for (k, agent) in agents.iter_mut().enumerate() {
+        agent.velocity = vector(0.2, 0.1 * (k % 5) as f64);
+    }
+    let scene = standing(parameters, agents);
+    let dt = scene.clock.time_step();
+    let mut simulation = Simulation::new(scene).unwrap();
+    let momentum = |simulation: &Simulation| -> [Vector; 2] {
+        let agents = simulation.frame().agents;
+        let sum = |velocities: &[Vector]| {
+            let parts = agents.mass.iter().zip(velocities);
+            parts.map(|(&mass, v)| v * mass).sum()
+        };
+        [sum(&agents.velocity), sum(&agents.legs_velocity)]
+    };
+    let [start, _] = momentum(&simulation);
+    run(&mut simulation, 50);
+    let [bodies, legs] = momentum(&simulation);
+    let expected = start * (1.0 - 0.3 * dt).powi(50);
+    assert!(
+        (bodies - expected).norm() < 1e-10 * start.norm(),
+        "{bodies} instead of {expected}"
+    );
+    assert!(legs.norm() < 1e-10, "{legs}");
+    let moved = simulation
+        .frame()
+        .agents
+        .legs_velocity
+        .iter()
+        .any(|w| w.norm() > 0.01);
+    assert!(moved);
+}
+
+#[test]
+fn a_lone_person_walks_upright() {
+    // Legs that run faster than bodies fall: such people do not sway.
+    let parameters = Parameters {
+        balancing_rate: Some(2.0),
+        ..alone(2.0)
+    };
+    let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
+    scene.agents = vec![person(Vector::zeros(), vector(500.0, 0.0))];
+    let mut simulation = Simulation::new(scene).unwrap();
+    run(&mut simulation, 1500);
+    let agents = simulation.frame().agents;
+    assert!(
+        (agents.velocity[0].x - 1.4).abs() < 0.05,
+        "{}",
+        agents.velocity[0]
+    );
+    assert!(agents.lean(0).norm() < 0.1, "{}", agents.lean(0));
+}
