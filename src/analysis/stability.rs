@@ -24,9 +24,9 @@
 //! forces replace C₂ K/m if they are stiffer. All friction includes K^goal/(τ m) of the goal force, or 1/Δt_coarse
 //! for RVO. A walking law that looks ahead, with ds/dx its change of speed over distance, adds ω² = 2 K^goal/(τ m)
 //! |ds/dx| everywhere: it pulls an agent after the one ahead; if the law anticipates, it adds 2 K^goal/(τ m) |ds/dv| to
-//! all friction. Drag adds its γ at twice ρ⁰max to all friction. Legs add A over the shorter of their
-//! ranges, where the repulsion is steepest, to the stiffness of contact and of corners, and the larger of their rates to
-//! all friction. No step is longer than the paper's Δt_coarse.
+//! all friction. Drag adds its γ at twice ρ⁰max to all friction. Legs add A over the shorter of their ranges, where
+//! the repulsion is steepest, to the stiffness of contact and of corners, and the larger of their rates to all
+//! friction. No step is longer than the paper's Δt_coarse.
 //!
 //! Every force returns its own [`Rates`]; those from outside the crate add their stiffness and friction to all modes.
 
