@@ -79,7 +79,7 @@ fn checks_of_the_built_in_suites_name_all_runs_and_no_unknown_quantities() {
     ] {
         fs::write(data.path().join(file), text).unwrap();
     }
-    for (name, count) in [("verification", 26), ("validation", 24)] {
+    for (name, count) in [("verification", 27), ("validation", 24)] {
         let suite = Suite::built_in(name).unwrap();
         assert_eq!(suite.cases.len(), count, "{name}");
         let chosen = Chosen {
