@@ -15,7 +15,7 @@ fn reached(speed: f64) -> Vec<[f64; 2]> {
 #[test]
 fn known_start_times_give_the_speed() {
     for speed in [0.3, -1.2, 8.0] {
-        let front = Front::through(&reached(speed)).unwrap();
+        let front = Front::through(&reached(speed), 0.0).unwrap();
         let found = front.speed.unwrap();
         assert!((found.value / speed - 1.0).abs() < 1e-9, "{found:?}");
         assert!(found.error < 1e-9 && (front.starts - 2.0).abs() < 1e-9);
@@ -31,7 +31,7 @@ fn a_fifth_of_wrong_times_hardly_matters_and_the_error_covers_scatter() {
             point[1] += 50.0;
         }
     }
-    let found = Front::through(&points).unwrap().speed.unwrap();
+    let found = Front::through(&points, 0.02).unwrap().speed.unwrap();
     assert!(found.error > 1e-4 && found.error < 0.1, "{found:?}");
     assert!((found.value - 1.2).abs() < 0.03, "{found:?}");
 }
@@ -42,11 +42,35 @@ fn who_starts_at_once_is_no_front() {
     for (k, point) in at_once.iter_mut().enumerate() {
         point[1] = 5.0 + 0.02 * f64::from((k * 7 % 5) as u8);
     }
-    let front = Front::through(&at_once).unwrap();
+    let front = Front::through(&at_once, 0.02).unwrap();
     assert_eq!(front.speed, None);
     assert!(front.slowness.value.abs() < 0.01);
-    assert_eq!(Front::through(&at_once[..3]), None);
-    assert_eq!(Front::through(&[[1.0, 2.0]; 20]), None);
+    assert_eq!(Front::through(&at_once[..3], 0.02), None);
+    assert_eq!(Front::through(&[[1.0, 2.0]; 20], 0.02), None);
+}
+
+#[test]
+fn a_difference_of_two_time_steps_is_no_front() {
+    // Thirty people, 1 m apart; those of the second half start some time steps earlier, all at once.
+    let time_step = 0.02;
+    let halves = |steps: f64| -> Vec<[f64; 2]> {
+        let starts = |k: i32| 5.0 - f64::from(k / 15) * steps * time_step;
+        (0..30).map(|k| [f64::from(k), starts(k)]).collect()
+    };
+    for steps in [1.0, 2.0] {
+        let front = Front::through(&halves(steps), time_step).unwrap();
+        assert!(front.slowness.error < 0.5 * front.slowness.value.abs());
+        assert!((front.slowness.value + steps * time_step / 15.0).abs() < 1e-12);
+        assert_eq!(front.speed, None);
+        let finer = Front::through(&halves(steps), 0.1 * time_step).unwrap();
+        assert!(finer.speed.unwrap().value < 0.0);
+    }
+    assert!(
+        Front::through(&halves(3.0), time_step)
+            .unwrap()
+            .speed
+            .is_some()
+    );
 }
 
 /// Twenty people 3 m apart along x who start at `secs(k)`, far apart from each other.

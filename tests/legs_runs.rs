@@ -197,3 +197,38 @@ fn wrong_parameters_of_legs_are_refused() {
     assert!(error(json!({"legs": true, "lean_limit": 0})).contains("lean_limit"));
     assert!(scenario(&document(json!({"legs": true})), &[]).is_ok());
 }
+
+#[test]
+fn people_on_legs_who_walk_get_a_note() {
+    let floor = json!([[[[0, 0], [12, 0], [12, 10], [0, 10]]]]);
+    let is_noted = |document: &serde_json::Value| {
+        let notes = scenario(document, &[]).unwrap().notes;
+        let on_legs = |note: &&String| note.contains("not of walks and evacuations");
+        let found = notes.iter().filter(on_legs).count();
+        assert!(found <= 1, "{notes:?}");
+        found == 1
+    };
+    let mut room = json!({
+        "profile": "legs", "duration_secs": 60, "walkable_area": floor,
+        "exits": [{"name": "east", "line": [[12, 4], [12, 6]]}],
+        "crowds": [{"area": [[0, 0], [11, 0], [11, 10], [0, 10]], "number": 20}],
+    });
+    assert!(is_noted(&room), "they walk to an exit");
+    room["crowds"][0]["premovement_secs"] = json!(60);
+    assert!(!is_noted(&room), "they stand until the end");
+    room["crowds"][0]["premovement_secs"] = json!(30);
+    assert!(is_noted(&room));
+    room["profile"] = json!("sph");
+    assert!(!is_noted(&room), "they have no legs");
+    let mut lone = json!({
+        "profile": "legs+sph", "duration_secs": 10, "walkable_area": floor,
+        "agents": [{"position": [2, 2], "goal": [2, 2]}],
+    });
+    assert!(!is_noted(&lone), "it is where it wants to be");
+    lone["agents"][0]["goal"] = json!([9, 2]);
+    assert!(is_noted(&lone));
+    lone["agents"][0]["premovement_secs"] = json!(11);
+    assert!(!is_noted(&lone), "it is pushed at most");
+    let sway = include_str!("../scenarios/questions/sway.json");
+    assert!(!is_noted(&serde_json::from_str(sway).unwrap()));
+}

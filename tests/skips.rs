@@ -57,8 +57,8 @@ fn needs_follow_from_the_profiles() {
     let needs = |name: &str| *crowd(blend(name)).needs();
     let sph = Wanted {
         pressure: true,
-        viscosity: false,
         contact: true,
+        ..Wanted::default()
     };
     let goal_only = Needs {
         density: true,

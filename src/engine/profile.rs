@@ -106,6 +106,7 @@ impl Profile {
             pressure: self.pressure,
             viscosity: self.viscosity.is_some(),
             contact: self.contact.agent_stiffness.is_some(),
+            legs: self.legs.is_some_and(|legs| legs.legs_strength != 0.0),
         }
     }
 
@@ -149,9 +150,7 @@ impl Profile {
             Term::ContactAgents => self.contact.agent_stiffness.is_some(),
             Term::ContactWalls => self.contact.wall_stiffness.is_some(),
             Term::Balance => self.legs.is_some(),
-            Term::BodyAgents | Term::BodyWalls => {
-                self.legs.is_some_and(|legs| legs.legs_strength != 0.0)
-            }
+            Term::BodyAgents | Term::BodyWalls => self.wanted().legs,
         }
     }
 
@@ -182,8 +181,9 @@ impl Profile {
         }
         if let Some(legs) = self.legs {
             terms.balance = Some(legs.balance(frame, i).body);
-            terms.body_agents = Some(legs.from_agents(frame, i).body);
-            terms.body_walls = Some(legs.from_walls(frame, i).body);
+            let near = frame.neighbors.near_walls(i);
+            terms.body_agents = Some(near::repulsion_of(frame, i).body);
+            terms.body_walls = Some(legs.from_walls(frame, i, near).body);
         }
         terms
     }

@@ -1,5 +1,6 @@
 //! The loop (§4.1).
 
+mod behavior;
 mod bound;
 mod choice;
 mod digest;
@@ -385,15 +386,5 @@ impl Derived {
             packed: &self.packed,
             seed: fixed.scene.behavior_seed.unwrap_or(fixed.scene.seed),
         }
-    }
-}
-
-impl Fixed {
-    fn blend(&self, agents: &Agents, i: usize) -> &Blend {
-        &self.scene.groups[usize::from(agents.group[i])].blend
-    }
-
-    fn change(&self, agents: &Agents, i: usize) -> Option<&Override> {
-        agents.push[i].map(|push| &self.scene.pushes[usize::from(push)].change)
     }
 }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::engine::forces::near;
 use crate::engine::simulation::Simulation;
 
 /// The legs under a body. Accelerations are in m/s².
@@ -30,15 +31,15 @@ impl LegsPart {
     pub fn of(simulation: &Simulation, i: usize) -> Option<Self> {
         let frame = simulation.frame();
         let law = simulation.blend(i).legs()?;
-        let agents = frame.agents;
+        let (agents, walls) = (frame.agents, frame.neighbors.near_walls(i));
         Some(Self {
             position: (*agents.legs.get(i)?).into(),
             velocity: (*agents.legs_velocity.get(i)?).into(),
             lean: agents.lean(i).norm(),
             lean_limit: law.lean_limit,
             balance: law.balance(&frame, i).legs.into(),
-            agents: law.from_agents(&frame, i).legs.into(),
-            walls: law.from_walls(&frame, i).legs.into(),
+            agents: near::repulsion_of(&frame, i).legs.into(),
+            walls: law.from_walls(&frame, i, walls).legs.into(),
             acceleration: (*frame.fields.legs_acceleration.get(i)?).into(),
         })
     }

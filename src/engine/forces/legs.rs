@@ -19,7 +19,6 @@
 //! For points 2 and 4 the program JuPedSim has other rules (pull request 1613): a driving force on bodies alone, and
 //! legs that are put back under a body which leans too far.
 
-use std::f64::consts::LN_2;
 use std::ops::Range;
 
 use schemars::JsonSchema;
@@ -27,11 +26,9 @@ use schemars::JsonSchema;
 use crate::engine::forces::rates::{Extremes, Rates};
 use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, direction};
-use crate::engine::neighbors::{BLOCK, ClusterBlock};
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{
-    Bodies, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, each, load, splat, spread,
-    store,
+    Bodies, Lanes, Level, Real, Repulsion, Simd, dispatch, load, splat, spread,
 };
 
 /// Parameters of the law.
@@ -98,200 +95,183 @@ impl Legs {
 
     /// The terms of falling and of balance for agent `i`.
     pub fn balance(&self, frame: &Frame, i: usize) -> Both {
-        let agents = frame.agents;
-        let wish = frame.fields.preferred_velocity[i];
-        let walk = walk(agents.velocity[i], wish);
-        let aim = direction(agents.lean(i)) * self.balance_speed + walk;
+        let (mut body, mut legs) = ([Vector::zeros()], [Vector::zeros()]);
+        self.add_balance(frame, i..i + 1, (&mut body, &mut legs));
         Both {
-            body: (aim - agents.velocity[i]) * self.unbalancing_rate,
-            legs: (aim - agents.legs_velocity[i]) * self.balancing_rate,
+            body: body[0],
+            legs: legs[0],
         }
     }
 
-    /// The repulsion by the walls near agent `i`.
-    pub fn from_walls(&self, frame: &Frame, i: usize) -> Both {
-        let (agents, walls) = (frame.agents, frame.walls);
-        let near = frame.neighbors.near_walls(i);
-        if near.is_empty() {
-            return Both::default();
-        }
-        let body = agents.position[i];
-        let is_near = |&(k, _): &(u32, Vector)| {
-            (body - walls.wall(k).nearest_point(body).point).norm() < self.legs_reach
-        };
-        let push = |from: Vector, range: f64| -> Vector {
-            let facing = walls.facing(from, near).filter(is_near);
-            let pushes = facing.map(|(_, away)| direction(away) * self.fall(away.norm(), range));
-            pushes.sum::<Vector>() / agents.mass[i]
-        };
-        Both {
-            body: push(body, self.body_range),
-            legs: push(agents.legs[i], self.leg_range),
-        }
-    }
-
-    /// A f(d, B), m/s².
-    pub fn fall(&self, distance: f64, range: f64) -> f64 {
-        let at_reach = (-self.legs_reach / range).exp();
-        self.legs_strength * ((-distance / range).exp() - at_reach).max(0.0)
-    }
-
-    /// The repulsion by other agents on agent `i`.
-    pub fn from_agents(&self, frame: &Frame, i: usize) -> Both {
-        let mut coefficients = [0.0; BLOCK];
-        coefficients[i % BLOCK] = 1.0 / frame.agents.mass[i];
-        let mut sums = [Both::default(); BLOCK];
-        self.add_from_agents(frame, i / BLOCK, &coefficients, &mut sums);
-        sums[i % BLOCK]
-    }
-
-    /// Adds the repulsion by other agents, times `coefficients`, to the accelerations of the agents of block `b`.
-    pub fn add_from_agents(
+    /// Adds the terms of falling and of balance of `agents` to the accelerations of their bodies and legs.
+    pub fn add_balance(
         &self,
         frame: &Frame,
-        b: usize,
-        coefficients: &[f64; BLOCK],
-        sums: &mut [Both],
+        agents: Range<usize>,
+        (bodies, legs): (&mut [Vector], &mut [Vector]),
     ) {
-        let block = frame.neighbors.near().block(b);
-        each!(frame.packed, columns => dispatch!(Level::new(), simd => {
-            self.add_sums(simd, (&columns.bodies, block), coefficients, sums);
-        }));
+        let all = frame.agents;
+        let positions = [&all.position, &all.legs].map(|column| &column[agents.clone()]);
+        let velocities = [&all.velocity, &all.legs_velocity].map(|column| &column[agents.clone()]);
+        let wishes = &frame.fields.preferred_velocity[agents];
+        dispatch!(Level::new(), _simd => {
+            self.balance_all(positions, velocities, wishes, [bodies, legs]);
+        });
     }
 
     #[inline(always)]
-    fn add_sums<R: Real, S: Simd>(
+    fn balance_all(
         &self,
-        simd: S,
-        (bodies, block): (&Bodies<R>, &ClusterBlock),
-        coefficients: &[f64; BLOCK],
-        sums: &mut [Both],
+        positions: [&[Vector]; 2],
+        velocities: [&[Vector]; 2],
+        wishes: &[Vector],
+        [bodies, legs]: [&mut [Vector]; 2],
     ) {
-        let reach = self.legs_reach / bodies.unit;
-        for (agents, runs) in block.clusters() {
-            let start = agents.start;
-            let own = start % BLOCK..start % BLOCK + agents.len();
-            let mut sum = Repulsion::<R, S> {
-                leans: Leans::of(bodies),
-                lean: [
-                    load(simd, &bodies.lean_x, start),
-                    load(simd, &bodies.lean_y, start),
-                ],
-                reach_squared: splat::<R, S>(simd, reach * reach),
-                body: Sum::new(simd, (self.body_range, self.legs_reach), bodies.unit),
-                legs: Sum::new(simd, (self.leg_range, self.legs_reach), bodies.unit),
-            };
-            add_pairs(simd, bodies, (start, runs), &mut sum);
-            let [body, legs] = [sum.body.sum, sum.legs.sum].map(
-                #[inline(always)]
-                |[x, y]| [store::<R, S>(x), store::<R, S>(y)],
-            );
-            let felt = coefficients[own.clone()].iter();
-            for (k, (sum, felt)) in sums[own].iter_mut().zip(felt).enumerate() {
-                let strength = self.legs_strength * felt;
-                sum.body += Vector::new(body[0][k], body[1][k]) * strength;
-                sum.legs += Vector::new(legs[0][k], legs[1][k]) * strength;
+        let positions = positions[0].iter().zip(positions[1]);
+        let velocities = velocities[0].iter().zip(velocities[1]);
+        let states = positions.zip(velocities).zip(wishes);
+        for ((body, legs), (((r, y), (v, w)), &wish)) in bodies.iter_mut().zip(legs).zip(states) {
+            let lean = r - y;
+            let e = lean / lean.norm().max(f64::MIN_POSITIVE);
+            let aim = e * self.balance_speed + walk(*v, wish);
+            *body += (aim - v) * self.unbalancing_rate;
+            *legs += (aim - w) * self.balancing_rate;
+        }
+    }
+
+    /// The repulsion by the walls `near` agent `i`.
+    pub fn from_walls(&self, frame: &Frame, i: usize, near: &[u32]) -> Both {
+        let (agents, walls) = (frame.agents, frame.walls);
+        let (body, legs) = (agents.position[i], agents.legs[i]);
+        let strength = self.legs_strength / agents.mass[i];
+        let push = |away: Vector, range: f64| {
+            let [here, there] = [away.norm(), self.legs_reach].map(|d| (-d / range).exp());
+            direction(away) * (strength * (here - there).max(0.0))
+        };
+        let mut both = Both::default();
+        for k in near {
+            let wall = walls.wall(*k);
+            if wall.is_beyond(body, self.legs_reach) {
+                continue;
             }
+            let facing = |p: Vector| walls.facing(p, std::slice::from_ref(k)).next();
+            let ahead = facing(body).map(|(_, away)| away);
+            let away = ahead.unwrap_or_else(|| body - wall.nearest_point(body).point);
+            if away.norm() >= self.legs_reach {
+                continue;
+            }
+            both.body += ahead.map_or(Vector::zeros(), |away| push(away, self.body_range));
+            if let Some((_, away)) = facing(legs) {
+                both.legs += push(away, self.leg_range);
+            }
+        }
+        both
+    }
+
+    /// The repulsion by other agents.
+    pub fn repulsion(&self) -> Repulsion {
+        Repulsion {
+            strength: self.legs_strength,
+            reach: self.legs_reach,
+            body_range: self.body_range,
+            leg_range: self.leg_range,
         }
     }
 }
 
 /// s: the part of a velocity along the preferred one, between zero and that, m/s.
+#[inline(always)]
 fn walk(velocity: Vector, wish: Vector) -> Vector {
-    let squared = wish.norm_squared();
-    match squared > 0.0 {
-        true => wish * (velocity.dot(&wish) / squared).clamp(0.0, 1.0),
-        false => Vector::zeros(),
-    }
+    let squared = wish.norm_squared().max(f64::MIN_POSITIVE);
+    wish * (velocity.dot(&wish) / squared).clamp(0.0, 1.0)
 }
 
 /// The leans of a run of agents, coordinate units.
-#[derive(Clone, Copy)]
-struct Leans<'a, R> {
+#[derive(Clone, Copy, Default)]
+pub struct Leans<'a, R> {
     x: &'a [R],
     y: &'a [R],
 }
 
 impl<'a, R: Real> Leans<'a, R> {
-    fn of(bodies: &'a Bodies<R>) -> Self {
+    /// The leans of the agents `run`.
+    #[inline(always)]
+    pub fn of(bodies: &'a Bodies<R>, run: Range<usize>) -> Self {
         Self {
-            x: &bodies.lean_x,
-            y: &bodies.lean_y,
+            x: &bodies.legs.lean_x[run.clone()],
+            y: &bodies.legs.lean_y[run],
         }
     }
 }
 
-/// The repulsion of bodies and of legs for eight agents i.
-struct Repulsion<'a, R: Real, S: Simd> {
-    leans: Leans<'a, R>,
+/// The repulsion of bodies and of legs for eight agents i, times A/m_i.
+pub struct FromAgents<R: Real, S: Simd> {
+    strength: Lanes<R, S>,
     lean: [Lanes<R, S>; 2],
     /// R², coordinate units².
     reach_squared: Lanes<R, S>,
-    body: Sum<R, S>,
-    legs: Sum<R, S>,
-}
-
-/// The sum of f(d, B) n for bodies or for legs.
-struct Sum<R: Real, S: Simd> {
-    /// −1/(B ln 2), per coordinate unit.
-    falling: Lanes<R, S>,
-    /// e^(−R/B)
-    at_reach: Lanes<R, S>,
+    /// −1/(B ln 2) and −1/(B_l ln 2), per coordinate unit.
+    rates: [Lanes<R, S>; 2],
+    /// e^(−R/B) and e^(−R/B_l)
+    at_reach: [Lanes<R, S>; 2],
+    /// Σ_j f(|y_i − y_j|, B_l) n'_ij
     sum: [Lanes<R, S>; 2],
 }
 
-impl<R: Real, S: Simd> Sum<R, S> {
+impl<R: Real, S: Simd> FromAgents<R, S> {
+    /// The sum for the agents from `start` on.
     #[inline(always)]
-    fn new(simd: S, (range, reach): (f64, f64), unit: f64) -> Self {
-        let zero = splat::<R, S>(simd, 0.0);
+    pub fn new(simd: S, bodies: &Bodies<R>, start: usize) -> Self {
+        let legs = &bodies.legs;
+        let reach = load(simd, &legs.reach, start);
+        let body_rate = load(simd, &legs.body_rate, start);
+        let legs_rate = load(simd, &legs.legs_rate, start);
         Self {
-            falling: splat::<R, S>(simd, -unit / (LN_2 * range)),
-            at_reach: splat::<R, S>(simd, (-reach / range).exp()),
-            sum: [zero; 2],
+            strength: load(simd, &legs.strength, start),
+            lean: [
+                load(simd, &legs.lean_x, start),
+                load(simd, &legs.lean_y, start),
+            ],
+            reach_squared: reach * reach,
+            rates: [body_rate, legs_rate],
+            at_reach: R::exp2_of_both(simd, [body_rate * reach, legs_rate * reach]),
+            sum: [splat::<R, S>(simd, 0.0); 2],
         }
     }
 
-    /// Adds an agent at this distance, coordinate units, whose square is given; `weight` is 1, or 0 for one that does
-    /// not act.
+    /// Adds agent j, at r_ij = r_i − r_j with this square and distance, coordinate units, with its lean. Returns
+    /// `others` plus the force on bodies along r_ij.
     #[inline(always)]
-    fn add(
+    pub fn added_to(
         &mut self,
         simd: S,
-        [dx, dy]: [Lanes<R, S>; 2],
-        (squared, weight): (Lanes<R, S>, Lanes<R, S>),
-    ) {
-        let zero = splat::<R, S>(simd, 0.0);
-        let distance = squared.max(splat::<R, S>(simd, R::TINY)).sqrt();
-        let size = (R::exp2(simd, distance * self.falling) - self.at_reach).max(zero) * weight;
-        let along = size / distance;
-        self.sum[0] = along.mul_add(dx, self.sum[0]);
-        self.sum[1] = along.mul_add(dy, self.sum[1]);
-    }
-}
-
-impl<'a, R: Real, S: Simd> PairSum<R, S> for Repulsion<'a, R, S> {
-    type Run = Leans<'a, R>;
-
-    #[inline(always)]
-    fn run(&self, run: Range<usize>) -> Leans<'a, R> {
-        Leans {
-            x: &self.leans.x[run.clone()],
-            y: &self.leans.y[run],
-        }
-    }
-
-    #[inline(always)]
-    fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], leans: Leans<'a, R>, j: usize) {
-        let squared = dy.mul_add(dy, dx * dx);
+        others: Lanes<R, S>,
+        ([dx, dy], squared, distance): ([Lanes<R, S>; 2], Lanes<R, S>, Lanes<R, S>),
+        (leans, j): (Leans<R>, usize),
+    ) -> Lanes<R, S> {
         let acts = squared.simd_lt(self.reach_squared);
         if acts.all_false() {
-            return;
+            return others;
         }
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
-        let weight = acts.select(one, zero);
-        self.body.add(simd, [dx, dy], (squared, weight));
         let x = dx - (self.lean[0] - spread(simd, leans.x[j]));
         let y = dy - (self.lean[1] - spread(simd, leans.y[j]));
-        self.legs.add(simd, [x, y], (y.mul_add(y, x * x), weight));
+        let squared = y.mul_add(y, x * x);
+        let between = squared.max(splat::<R, S>(simd, R::TINY)).sqrt();
+        // The division does not wait for the exponentials.
+        let inverse = one / between;
+        let distances = [distance * self.rates[0], between * self.rates[1]];
+        let [body, legs] = R::exp2_of_both(simd, distances);
+        let legs = acts.select((legs - self.at_reach[1]).max(zero), zero) * inverse;
+        self.sum[0] = legs.mul_add(x, self.sum[0]);
+        self.sum[1] = legs.mul_add(y, self.sum[1]);
+        let body = (body - self.at_reach[0]).max(zero);
+        self.strength.mul_add(body, others)
+    }
+
+    /// The accelerations of the legs, m/s².
+    #[inline(always)]
+    pub fn of_legs(&self) -> [Lanes<R, S>; 2] {
+        [self.sum[0] * self.strength, self.sum[1] * self.strength]
     }
 }

@@ -14,7 +14,7 @@ mod real;
 mod sums;
 mod vectors;
 
-pub use columns::{Bodies, Columns, Reach};
+pub use columns::{Bodies, Columns, Reach, Repulsion};
 pub use fearless_simd::{
     Level, Simd, dispatch, f32x8, f64x8, mask32x8, mask64x8, prelude, u8x64, u32x8,
 };
@@ -114,8 +114,11 @@ impl Packed {
     /// Packs the positions, velocities and leans of all agents.
     pub fn take_motions(&mut self, agents: &Agents) {
         each!(self, columns => {
-            columns.bodies.take_motions(agents);
-            columns.bodies.take_leans(agents);
+            let bodies = &mut columns.bodies;
+            bodies.take_motions(agents);
+            if !agents.legs.is_empty() {
+                bodies.legs.take_leans(agents, bodies.unit);
+            }
         });
     }
 }

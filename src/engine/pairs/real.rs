@@ -88,6 +88,12 @@ pub trait Real: SimdFloatElement + Into<f64> + Copy + Default + Send + Sync + 's
 
     /// 2ˣ for x ≤ 0; results below 2⁻¹²⁶ may be clamped to it.
     fn exp2<S: Simd>(simd: S, x: Self::Lanes<S>) -> Self::Lanes<S>;
+
+    /// [`exp2`](Self::exp2) of both, in one vector if the processor has one that is as long.
+    #[inline(always)]
+    fn exp2_of_both<S: Simd>(simd: S, [x, y]: [Self::Lanes<S>; 2]) -> [Self::Lanes<S>; 2] {
+        [Self::exp2(simd, x), Self::exp2(simd, y)]
+    }
 }
 
 impl Real for f64 {
@@ -166,27 +172,37 @@ impl Real for f32 {
         (from - to).to_float()
     }
 
-    /// Computes 2ⁿ 2ʳ with |r| ≤ 1/2, where 2ʳ = e^(r ln 2) is a Taylor series.
-    ///
-    /// Adding `ROUNDING` rounds x to n, which the sum has in its lowest bits; shifted, n is added to the exponent of
-    /// 2ʳ. No exponent is below the least: n = −126 is the rounded x only for r ≥ 0, for which 2ʳ ≥ 1.
     #[inline(always)]
     fn exp2<S: Simd>(simd: S, x: f32x8<S>) -> f32x8<S> {
-        let mut c = [f32x8::splat(simd, 0.0); SERIES.len()];
-        for (lanes, coefficient) in c.iter_mut().zip(SERIES) {
-            *lanes = f32x8::splat(simd, coefficient);
-        }
-        let x = x.max(f32x8::splat(simd, -126.0));
-        let rounding = f32x8::splat(simd, ROUNDING);
-        let rounded = x + rounding;
-        let r = x - (rounded - rounding);
-        let r2 = r * r;
-        let low = c[3].mul_add(r, c[2]).mul_add(r2, c[1].mul_add(r, c[0]));
-        let high = c[6].mul_add(r2, c[5].mul_add(r, c[4]));
-        let power = high.mul_add(r2 * r2, low);
-        let exponent = rounded.bitcast::<i32x8<S>>() << 23;
-        (power.bitcast::<i32x8<S>>() + exponent).bitcast()
+        exp2(simd, x)
     }
+
+    #[inline(always)]
+    fn exp2_of_both<S: Simd>(simd: S, [x, y]: [f32x8<S>; 2]) -> [f32x8<S>; 2] {
+        let (x, y) = exp2(simd, x.combine(y)).split();
+        [x, y]
+    }
+}
+
+/// Computes 2ⁿ 2ʳ with |r| ≤ 1/2, where 2ʳ = e^(r ln 2) is a Taylor series.
+///
+/// Adding `ROUNDING` rounds x to n, which the sum has in its lowest bits; shifted, n is added to the exponent of 2ʳ. No
+/// exponent is below the least: n = −126 is the rounded x only for r ≥ 0, for which 2ʳ ≥ 1.
+#[inline(always)]
+fn exp2<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, x: V) -> V {
+    let mut c = [V::splat(simd, 0.0); SERIES.len()];
+    for (lanes, coefficient) in c.iter_mut().zip(SERIES) {
+        *lanes = V::splat(simd, coefficient);
+    }
+    let x = x.max(V::splat(simd, -126.0));
+    let rounding = V::splat(simd, ROUNDING);
+    let rounded = x + rounding;
+    let r = x - (rounded - rounding);
+    let r2 = r * r;
+    let low = c[3].mul_add(r, c[2]).mul_add(r2, c[1].mul_add(r, c[0]));
+    let high = c[6].mul_add(r2, c[5].mul_add(r, c[4]));
+    let power = high.mul_add(r2 * r2, low);
+    V::from_bits(power.to_bits() + (rounded.to_bits() << 23))
 }
 
 /// 1.5 · 2²³: numbers near it are integers.

@@ -143,6 +143,7 @@ impl Blend {
         Reach {
             support_radius: self.sph.support_radius,
             contact_scale: self.steps[0].profile.contact.contact_scale,
+            legs: self.legs().as_ref().map(Legs::repulsion),
         }
     }
 

@@ -1,8 +1,6 @@
 //! The quantities that a scene needs.
 
-use super::different;
 use crate::engine::agents::Agents;
-use crate::engine::forces::legs::Legs;
 use crate::engine::forces::near::Wanted;
 use crate::engine::forces::walking::{Headings, WalkingLaw};
 use crate::engine::profile::Profile;
@@ -95,11 +93,6 @@ impl Scene {
             .profiles()
             .filter_map(|profile| profile.walking.as_ref());
         laws.filter_map(WalkingLaw::headings)
-    }
-
-    /// The distinct laws of legs.
-    pub fn legs(&self) -> Vec<Legs> {
-        different(self.groups.iter().filter_map(|group| group.blend.legs()))
     }
 
     /// The narrowings of the floor, if a walking law heeds them.

@@ -1,11 +1,9 @@
 //! Steps 1–4: from the state to the accelerations, without moving agents.
 
-use std::ops::Range;
-
+use rayon::iter::{Either, repeat_n};
 use rayon::prelude::*;
 
 use super::{Fixed, Simulation, Stage};
-use crate::engine::agents::Agents;
 use crate::engine::density;
 use crate::engine::forces::goal;
 use crate::engine::forces::near::{self, PairCoefficients};
@@ -15,7 +13,6 @@ use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, are_finite, clamp_length, direction};
 use crate::engine::neighbors::{BLOCK, ListPolicy, TASK};
 use crate::engine::pairs::{Level, dispatch, each};
-use crate::engine::profile::{Blend, Override};
 
 impl Simulation {
     /// Runs `work` on a thread of the thread pool, unless the crowd is too small for a second thread. Started from
@@ -41,7 +38,7 @@ impl Simulation {
             self.sort_agents();
         }
         let needs = &self.fixed.needs;
-        let reads_lists = needs.pairs.any() || needs.social || needs.walking || needs.legs;
+        let reads_lists = needs.pairs.any() || needs.social || needs.walking;
         if !(reads_lists || self.density_is_due()) {
             return;
         }
@@ -245,27 +242,33 @@ impl Simulation {
         std::mem::swap(&mut self.crowd.agents.avoidance, chosen);
     }
 
-    /// Steps 3, 3B and 4.
+    /// Steps 3, 3B and 4, and the accelerations of legs.
     pub(super) fn update_acceleration(&mut self) {
         let (fixed, agents, derived) = (&self.fixed, &self.crowd.agents, &mut self.derived);
-        let acceleration = &mut self.buffers.acceleration;
+        let bodies = &mut self.buffers.acceleration;
+        let mut legs = std::mem::take(&mut derived.fields.legs_acceleration);
         derived.fields.acceleration.clear(); // stale values must not be read
         derived.finite = self.stages.time(Stage::Acceleration, || {
-            acceleration.resize(agents.len(), Vector::zeros());
+            bodies.resize(agents.len(), Vector::zeros());
+            legs.resize(agents.legs.len(), Vector::zeros());
             let frame = derived.frame(fixed, &self.crowd);
-            acceleration
-                .par_chunks_mut(BLOCK)
-                .with_min_len(fixed.task())
-                .with_max_len(2 * fixed.task())
-                .enumerate()
-                .map(|(b, acceleration)| {
-                    fixed.accelerate(&frame, b, acceleration);
-                    block_is_finite(&frame, b, acceleration)
-                })
-                .reduce(|| true, |a, b| a && b)
+            let task = fixed.task();
+            let blocks = agents.len().div_ceil(BLOCK);
+            let legs = match legs.is_empty() {
+                true => Either::Left(repeat_n((), blocks).map(|()| &mut [][..])),
+                false => Either::Right(legs.par_chunks_mut(BLOCK)),
+            };
+            let blocks = bodies.par_chunks_mut(BLOCK).zip(legs);
+            let blocks = blocks.with_min_len(task).with_max_len(2 * task).enumerate();
+            let finite = blocks.map(|(b, (bodies, legs))| {
+                fixed.accelerate(&frame, b, (&mut *bodies, &mut *legs));
+                block_is_finite(&frame, b, bodies) && are_finite(legs)
+            });
+            finite.reduce(|| true, |a, b| a && b)
         });
-        std::mem::swap(&mut derived.fields.acceleration, acceleration);
-        self.update_legs();
+        let fields = &mut derived.fields;
+        std::mem::swap(&mut fields.acceleration, &mut self.buffers.acceleration);
+        fields.legs_acceleration = legs;
     }
 }
 
@@ -311,15 +314,21 @@ impl Fixed {
         }
     }
 
-    /// Computes the accelerations of the agents of block `b`.
-    fn accelerate(&self, frame: &Frame, b: usize, acceleration: &mut [Vector]) {
+    /// Computes the accelerations of the agents of block `b` and of their legs.
+    fn accelerate(
+        &self,
+        frame: &Frame,
+        b: usize,
+        (acceleration, legs): (&mut [Vector], &mut [Vector]),
+    ) {
         let from = b * BLOCK;
         let to = from + acceleration.len();
         let mut felt = PairCoefficients::default();
         self.each_span(frame.agents, from..to, |span, blend, changed| {
             blend.add_pair_coefficients(frame, span, changed, &mut felt);
         });
-        near::accelerations(frame, b, &felt, self.needs.pairs, acceleration);
+        let both = (&mut *acceleration, &mut *legs);
+        near::accelerations(frame, b, &felt, self.needs.pairs, both);
         for social in &self.social_forces {
             let mut felt = [0.0; BLOCK];
             self.each_span(frame.agents, from..to, |span, blend, _| {
@@ -331,33 +340,13 @@ impl Fixed {
             let acceleration = &mut acceleration[span.start - from..span.end - from];
             blend.add_accelerations(frame, span, changed, acceleration);
         });
+        if self.needs.legs {
+            self.accelerate_legs(frame, from, (&mut *acceleration, legs));
+        }
         for force in &self.scene.own_forces {
             for (k, acceleration) in acceleration.iter_mut().enumerate() {
                 *acceleration += force.acceleration(frame, from + k);
             }
-        }
-    }
-
-    /// Splits a range of agents wherever the group or the push changes.
-    #[inline]
-    pub(super) fn each_span(
-        &self,
-        agents: &Agents,
-        range: Range<usize>,
-        mut take: impl FnMut(Range<usize>, &Blend, Option<&Override>),
-    ) {
-        let behavior = |i: usize| (agents.group[i], agents.push[i]);
-        let mut start = range.start;
-        while start < range.end {
-            let same = |&i: &usize| behavior(i) == behavior(start);
-            let end = (start + 1..range.end).find(|i| !same(i));
-            let end = end.unwrap_or(range.end);
-            take(
-                start..end,
-                self.blend(agents, start),
-                self.change(agents, start),
-            );
-            start = end;
         }
     }
 }

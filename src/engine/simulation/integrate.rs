@@ -243,8 +243,9 @@ impl Motion {
     }
 }
 
+/// The motions of the agents, or of the legs, of a block.
 #[inline(always)]
-fn find_motions(
+pub(super) fn find_motions(
     motion_of: impl Fn(usize, Vector, Vector) -> Motion,
     velocities: &[Vector],
     accelerations: &[Vector],
@@ -256,9 +257,9 @@ fn find_motions(
     }
 }
 
-/// Moves agents by `dt` seconds if none is faster than `limit`, m/s; otherwise returns `false` and moves none.
+/// Moves agents, or legs, by `dt` seconds if none is faster than `limit`, m/s; else returns `false` and moves none.
 #[inline(always)]
-fn move_freely(
+pub(super) fn move_freely(
     limit: f64,
     dt: f64,
     motions: &[Motion],

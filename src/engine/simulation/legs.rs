@@ -2,13 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::integrate::Motion;
+use super::integrate::{Motion, find_motions, move_freely};
 use super::{Fixed, Simulation, Stage};
 use crate::engine::forces::legs::{Both, Legs};
 use crate::engine::frame::Frame;
 use crate::engine::geometry::Walls;
-use crate::engine::math::{Vector, are_finite, clamp_length, direction};
+use crate::engine::math::{Vector, clamp_length, direction};
 use crate::engine::neighbors::{BLOCK, TASK};
+use crate::engine::pairs::{Level, dispatch};
 
 impl Simulation {
     /// Puts legs under agents that entered since.
@@ -16,32 +17,6 @@ impl Simulation {
         if self.fixed.needs.legs {
             self.crowd.agents.stand();
         }
-    }
-
-    /// The accelerations of legs, and what legs add to those of bodies.
-    pub(super) fn update_legs(&mut self) {
-        if !self.fixed.needs.legs {
-            return;
-        }
-        let fields = &mut self.derived.fields;
-        let mut bodies = std::mem::take(&mut fields.acceleration);
-        let mut legs = std::mem::take(&mut fields.legs_acceleration);
-        legs.clear();
-        legs.resize(bodies.len(), Vector::zeros());
-        let (fixed, laws) = (&self.fixed, self.fixed.scene.legs());
-        let frame = self.derived.frame(fixed, &self.crowd);
-        let finite = self.stages.time(Stage::Acceleration, || {
-            let blocks = (bodies.par_chunks_mut(BLOCK), legs.par_chunks_mut(BLOCK));
-            let blocks = blocks.into_par_iter().with_min_len(TASK).enumerate();
-            let each = blocks.map(|(b, (bodies, legs))| {
-                fixed.accelerate_legs(&frame, &laws, b, (bodies, legs));
-                are_finite(bodies) && are_finite(legs)
-            });
-            each.reduce(|| true, |a, b| a && b)
-        });
-        let fields = &mut self.derived.fields;
-        (fields.acceleration, fields.legs_acceleration) = (bodies, legs);
-        self.derived.finite &= finite;
     }
 
     /// Moves the legs of all agents by `dt` seconds, after their bodies. `motion_of` maps index, velocity and
@@ -56,38 +31,78 @@ impl Simulation {
         }
         let (fixed, agents) = (&self.fixed, &mut self.crowd.agents);
         let neighbors = &self.derived.neighbors;
-        let (positions, velocities) = (&agents.position, &agents.velocity);
-        let (groups, max_speeds) = (&agents.group, &agents.max_speed);
-        let moves = agents.legs.par_iter_mut().zip(&mut agents.legs_velocity);
-        let moves = moves.zip(&self.derived.fields.legs_acceleration);
-        let moves = moves.enumerate().with_min_len(TASK * BLOCK);
+        let mut legs = std::mem::take(&mut agents.legs);
+        let mut legs_velocity = std::mem::take(&mut agents.legs_velocity);
+        let agents = &*agents;
+        let blocks = (
+            legs.par_chunks_mut(BLOCK),
+            legs_velocity.par_chunks_mut(BLOCK),
+            self.derived.fields.legs_acceleration.par_chunks(BLOCK),
+        );
         self.stages.time(Stage::Integration, || {
-            moves.for_each(|(i, ((legs, velocity), &acceleration))| {
-                let body = (positions[i], velocities[i]);
-                let group = &fixed.scene.groups[usize::from(groups[i])];
-                let Some(law) = group.blend.legs() else {
-                    (*legs, *velocity) = body;
-                    return;
-                };
-                let limit = max_speeds.get(i).copied().unwrap_or(fixed.scene.max_speed);
-                let motion = motion_of(i, *velocity, acceleration);
-                *legs += clamp_length(motion.way, limit) * dt;
-                *velocity = clamp_length(motion.velocity, limit);
-                hold(&law, body, (legs, velocity));
-                let near = neighbors.near_walls(i);
-                stop(&fixed.scene.walls, (body.0, near), (legs, velocity));
+            let blocks = blocks.into_par_iter().with_min_len(TASK).enumerate();
+            blocks.for_each(|(b, (legs, velocities, accelerations))| {
+                let from = b * BLOCK;
+                let block = from..from + legs.len();
+                let motion = |k: usize, v: Vector, a: Vector| motion_of(from + k, v, a);
+                let limit = |k: usize| fixed.scene.max_speed(agents, from + k);
+                let mut motions = [Motion::default(); BLOCK];
+                let motions = &mut motions[..accelerations.len()];
+                let states = (&mut *legs, &mut *velocities);
+                let is_moved = dispatch!(Level::new(), _simd => {
+                    find_motions(motion, states.1, accelerations, motions);
+                    let most = fixed.scene.max_speed;
+                    agents.max_speed.is_empty() && move_freely(most, dt, motions, states)
+                });
+                if !is_moved {
+                    let states = legs
+                        .iter_mut()
+                        .zip(&mut *velocities)
+                        .zip(motions)
+                        .enumerate();
+                    for (k, ((legs, velocity), motion)) in states {
+                        *legs += clamp_length(motion.way, limit(k)) * dt;
+                        *velocity = clamp_length(motion.velocity, limit(k));
+                    }
+                }
+                fixed.each_span(agents, block.clone(), |span, blend, _| {
+                    let own = span.start - from..span.end - from;
+                    let bodies = (&agents.position[span.clone()], &agents.velocity[span]);
+                    let legs = (&mut legs[own.clone()], &mut velocities[own]);
+                    match blend.legs() {
+                        Some(law) => hold(&law, bodies, legs),
+                        None => {
+                            legs.0.copy_from_slice(bodies.0);
+                            legs.1.copy_from_slice(bodies.1);
+                        }
+                    }
+                });
+                for (i, near) in neighbors.agents_near_walls(block) {
+                    let legs = (&mut legs[i - from], &mut velocities[i - from]);
+                    stop(&fixed.scene.walls, (agents.position[i], near), legs);
+                }
             });
         });
+        let agents = &mut self.crowd.agents;
+        (agents.legs, agents.legs_velocity) = (legs, legs_velocity);
     }
 }
 
-/// The body, with this position and velocity, pulls its legs along at the limit of the lean.
-fn hold(law: &Legs, (r, v): (Vector, Vector), (legs, velocity): (&mut Vector, &mut Vector)) {
-    let lean = r - *legs;
-    if lean.norm() > law.lean_limit {
-        let e = direction(lean);
-        *legs = r - e * law.lean_limit;
-        *velocity += e * (v - *velocity).dot(&e).max(0.0);
+/// Bodies, with these positions and velocities, pull their legs along at the limit of the lean.
+fn hold(
+    law: &Legs,
+    (positions, velocities): (&[Vector], &[Vector]),
+    (legs, legs_velocities): (&mut [Vector], &mut [Vector]),
+) {
+    let legs = legs.iter_mut().zip(legs_velocities);
+    let bodies = positions.iter().zip(velocities);
+    for ((legs, velocity), (&r, &v)) in legs.zip(bodies) {
+        let lean = r - *legs;
+        if lean.norm_squared() > law.lean_limit * law.lean_limit {
+            let e = direction(lean);
+            *legs = r - e * law.lean_limit;
+            *velocity += e * (v - *velocity).dot(&e).max(0.0);
+        }
     }
 }
 
@@ -105,31 +120,32 @@ fn stop(
 }
 
 impl Fixed {
-    /// Computes the accelerations of the legs of block `b`, and adds those that legs bring to bodies.
-    fn accelerate_legs(
+    /// Adds the terms of legs that do not depend on other agents to the accelerations of bodies and legs, of a block of
+    /// agents that begins with `from`.
+    pub(super) fn accelerate_legs(
         &self,
         frame: &Frame,
-        laws: &[Legs],
-        b: usize,
+        from: usize,
         (bodies, legs): (&mut [Vector], &mut [Vector]),
     ) {
-        let from = b * BLOCK;
         let block = from..from + bodies.len();
-        for law in laws {
-            let has_law = |i: usize| self.blend(frame.agents, i).legs() == Some(*law);
-            let mut felt = [0.0; BLOCK];
-            for i in block.clone().filter(|&i| has_law(i)) {
-                felt[i % BLOCK] = 1.0 / frame.agents.mass[i];
-            }
-            let mut sums = [Both::default(); BLOCK];
+        self.each_span(frame.agents, block, |span, blend, _| {
+            let Some(law) = blend.legs() else {
+                return;
+            };
+            let own = span.start - from..span.end - from;
+            law.add_balance(
+                frame,
+                span.clone(),
+                (&mut bodies[own.clone()], &mut legs[own]),
+            );
             if law.legs_strength != 0.0 {
-                law.add_from_agents(frame, b, &felt, &mut sums);
+                for (i, near) in frame.neighbors.agents_near_walls(span) {
+                    let Both { body, legs: under } = law.from_walls(frame, i, near);
+                    bodies[i - from] += body;
+                    legs[i - from] += under;
+                }
             }
-            for i in block.clone().filter(|&i| has_law(i)) {
-                let (balance, walls) = (law.balance(frame, i), law.from_walls(frame, i));
-                bodies[i - from] += sums[i - from].body + balance.body + walls.body;
-                legs[i - from] += sums[i - from].legs + balance.legs + walls.legs;
-            }
-        }
+        });
     }
 }

@@ -129,11 +129,7 @@ fn more(simulation: &Simulation, add: fn(&mut Needs)) -> Result<Undone, &'static
 pub fn everything() -> Needs {
     Needs {
         density: true,
-        pairs: Wanted {
-            pressure: true,
-            viscosity: true,
-            contact: true,
-        },
+        pairs: Wanted::PAPER,
         rvo: true,
         social: true,
         walking: true,

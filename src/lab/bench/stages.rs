@@ -26,7 +26,7 @@ use crate::scenario::{Scenario, Setting, built_in, floor_plan};
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "stages",
     about: "time per stage of a frame, of shipped scenarios, dense crowds that avoid, a dense hall with walking laws, \
-            and an office floor with ways by time",
+            an office floor with ways by time, and people on legs who sway",
     run,
 };
 
@@ -48,6 +48,10 @@ const BUSIEST: [Stretch; 6] = [
 const QUICK: usize = 4;
 /// The stretch of all scenarios in quick plans: start and length, seconds.
 const QUICK_STRETCH: (f64, f64) = (0.1, 0.2);
+
+/// The stretch of people who sway on 50 m × 20 m, and their profiles.
+const SWAY: Stretch = ("questions/sway", 60.0, 20.0);
+const SWAYING: [&str; 3] = ["sph", "legs", "legs+sph"];
 
 /// The walking laws of the hall.
 const LAWS: [&str; 5] = ["none", "headway", "headings", "density-ahead", "drag"];
@@ -123,27 +127,27 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     let mut rows = Vec::new();
     for stretch in busiest(plan) {
         say(stretch.0);
-        rows.push(measure(begin(stretch, plan, None)?, plan)?);
+        rows.extend(in_turns([begin(stretch, plan, None)], plan)?);
     }
     let agents = plan.choose(10_000, 400);
     let before = plan.choose(50, 5);
     let streaming = plan.choose(25, 5);
-    for profile in ["sf", "rvo"] {
+    let streams = ["sf", "rvo"].map(|profile| {
         say(&format!("{agents} agents at 4 P/m², {profile}"));
-        let started = Started {
+        Ok(Started {
             name: "streams, 4 P/m²",
             profile: profile.to_owned(),
             simulation: Crowd::streams(agents, profile).settled(before)?,
             measurements: Vec::new(),
             frames: streaming,
-        };
-        rows.push(measure(started, plan)?);
-    }
+        })
+    });
+    rows.extend(in_turns(streams, plan)?);
     let bays = plan.choose([13, 5], [2, 1]);
     let walking = plan.choose(100, 5);
-    for law in LAWS {
+    let halls = LAWS.map(|law| {
         say(&format!("hall with pillars, walking law {law}"));
-        let started = Started {
+        Ok(Started {
             name: "hall with pillars",
             profile: match law {
                 "none" => "sph".to_owned(),
@@ -152,27 +156,37 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
             simulation: hall::settled(bays, before, law)?,
             measurements: Vec::new(),
             frames: walking,
-        };
-        rows.push(measure(started, plan)?);
-    }
+        })
+    });
+    rows.extend(in_turns(halls, plan)?);
     let corridors = plan.choose(10, 1);
     let leaving = plan.choose(250, 5);
-    for choice in ["shortest", "quickest"] {
+    let offices = ["shortest", "quickest"].map(|choice| {
         say(&format!("office floor, {choice} ways"));
-        let started = Started {
+        Ok(Started {
             name: "office floor",
             profile: format!("walk+sph, {choice}"),
             simulation: office::settled(corridors, leaving, choice)?,
             measurements: Vec::new(),
             frames: leaving,
-        };
-        rows.push(measure(started, plan)?);
-    }
+        })
+    });
+    rows.extend(in_turns(offices, plan)?);
+    let swaying = SWAYING.map(|profile| {
+        say(&format!("swaying crowd, {profile}"));
+        let started = begin(&SWAY, plan, Some(profile))?;
+        Ok(Started {
+            name: "swaying crowd",
+            ..started
+        })
+    });
+    rows.extend(in_turns(swaying, plan)?);
     let stretches = busiest(plan).iter().map(|&(name, from, lasting)| {
         let (from, lasting) = plan.choose((from, lasting), QUICK_STRETCH);
         format!("{name} {from}–{} s", from + lasting)
     });
     let stretches = stretches.collect::<Vec<_>>().join(", ");
+    let sway = plan.choose((SWAY.1, SWAY.2), QUICK_STRETCH);
     let until = |frames: u64| PAPER_TIME_STEP * (before + frames) as f64;
     let from = until(0);
     Ok(Findings {
@@ -184,7 +198,8 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
              {stretches}. Streams: {agents} agents from {from:.1} to {:.1} s, half of them walking to the right and \
              half to the left. Hall: {} pillars stand between the agents, at 4.7 P/m², and their goal; from {from:.1} \
              to {:.1} s, without and with a walking law. Office floor: {} people leave {} rooms from {:.1} to {:.1} s, \
-             by the shortest or by the quickest ways. Measuring: the scenario's measurements and the search for \
+             by the shortest or by the quickest ways. Swaying crowd: questions/sway.json from {} to {} s; with `sph` \
+             it is at rest. Rows of one crowd take turns. Measuring: the scenario's measurements and the search for \
              agents that stand, as in every run; it is not part of the frame. – : a stage that never runs.",
             until(streaming),
             bays[0] * bays[1],
@@ -193,13 +208,32 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
             20 * corridors,
             PAPER_TIME_STEP * leaving as f64,
             PAPER_TIME_STEP * 2.0 * leaving as f64,
+            sway.0,
+            sway.0 + sway.1,
         )],
     })
 }
 
-fn measure(started: Started, plan: &Plan) -> Result<Divided, LabError> {
-    let replays = (0..plan.repeats).map(|_| replay(&started));
-    let times: Vec<(StageTimes, f64)> = replays.collect::<Result<_, LabError>>()?;
+/// Measures crowds, which take turns.
+fn in_turns<const N: usize>(
+    started: [Result<Started, LabError>; N],
+    plan: &Plan,
+) -> Result<Vec<Divided>, LabError> {
+    let started: Vec<Started> = started.into_iter().collect::<Result<_, _>>()?;
+    let mut times = vec![Vec::with_capacity(plan.repeats); N];
+    for _ in 0..plan.repeats {
+        for (started, times) in started.iter().zip(&mut times) {
+            times.push(replay(started)?);
+        }
+    }
+    let rows = started.into_iter().zip(&times);
+    Ok(rows
+        .map(|(started, times)| divided(started, times))
+        .collect())
+}
+
+/// The results for a crowd, given the times of its stages and of its measurements in each repeat.
+fn divided(started: Started, times: &[(StageTimes, f64)]) -> Divided {
     let range = |ms: &dyn Fn(&StageTimes) -> f64| {
         let values: Vec<f64> = times.iter().map(|(times, _)| ms(times)).collect();
         Range::of(&values)
@@ -207,7 +241,7 @@ fn measure(started: Started, plan: &Plan) -> Result<Divided, LabError> {
     let measuring: Vec<f64> = times.iter().map(|&(_, ms)| ms).collect();
     let stages = Stage::ALL.map(|stage| (stage.name(), range(&|times| ms_of(times, stage))));
     let stages = stages.into_iter().filter(|(_, range)| range.maximum > 0.0);
-    Ok(Divided {
+    Divided {
         crowd: started.name,
         agents: started.simulation.frame().agents.len(),
         profile: started.profile,
@@ -215,7 +249,7 @@ fn measure(started: Started, plan: &Plan) -> Result<Divided, LabError> {
         ms_per_frame: range(&StageTimes::total_ms_per_frame),
         stages_ms: stages.collect(),
         measurements_ms: Range::of(&measuring),
-    })
+    }
 }
 
 /// The times of the stages, and the milliseconds per frame of the measurements.

@@ -45,6 +45,7 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
         .chain(unused(scene))
         .chain(closed(keys, scene))
         .chain(unheeded(keys, scene))
+        .chain(on_legs(keys, scene))
         .chain(crowded(keys, scene, entering))
         .collect()
 }
@@ -96,6 +97,34 @@ fn unheeded(keys: &File, scene: &Scene) -> Vec<String> {
         );
     }
     notes
+}
+
+/// A note on people on legs who walk to a goal before the run ends: the law is one of people who stand.
+fn on_legs(keys: &File, scene: &Scene) -> Option<String> {
+    let end = keys.duration_secs.unwrap_or(f64::INFINITY);
+    let walks = |group: &Group, own: Option<f64>, is_sent: bool| {
+        let waits = own.or_else(|| Some(group.traits.premovement.as_ref()?.mean()));
+        group.blend.legs().is_some() && is_sent && waits.unwrap_or(0.0) < end
+    };
+    let is_sent = |group: &Group| {
+        group.journey.is_some() || group.removal_radius.is_some() || group.direction.is_some()
+    };
+    let mut groups = scene.groups.iter();
+    let group = groups.find(|group| walks(group, None, is_sent(group)));
+    let group = group.or_else(|| {
+        let mut agents = scene.agents.iter();
+        let walker = agents.find(|agent| {
+            let group = &scene.groups[usize::from(agent.group)];
+            walks(group, agent.premovement, agent.goal != agent.position)
+        })?;
+        Some(&scene.groups[usize::from(walker.group)])
+    })?;
+    Some(format!(
+        "{}: people on legs walk to a goal (profile `{}`); legs are a law of crowds that stand and sway, not of walks and \
+         evacuations",
+        shown(&group.name),
+        shown(&group.blend.name)
+    ))
 }
 
 /// A note on a floor that is so large or empty that its unit may not be meters. Its size is that of the plan, without

@@ -87,9 +87,13 @@ impl Front {
     }
 
     /// The front over places at the start, or over the places where agents began to move.
-    fn front(people: &[Reached], place: fn(&Reached) -> Option<f64>) -> Option<front::Front> {
+    fn front(
+        people: &[Reached],
+        time_step: f64,
+        place: fn(&Reached) -> Option<f64>,
+    ) -> Option<front::Front> {
         let points = people.iter().filter_map(|of| Some([place(of)?, of.secs?]));
-        front::Front::through(&points.collect::<Vec<_>>())
+        front::Front::through(&points.collect::<Vec<_>>(), time_step)
     }
 }
 
@@ -188,15 +192,16 @@ impl Measure for Front {
         }
     }
 
-    fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
+    fn values(&self, seen: &Self::Seen, simulation: &Simulation) -> Vec<Option<f64>> {
         let Some(people) = seen else {
             return vec![None; self.quantities().len()];
         };
         let reached = || people.iter().filter(|of| of.secs.is_some());
         let first = people.iter().map(|of| of.place).reduce(f64::min);
         let farthest = reached().map(|of| of.place).reduce(f64::max);
-        let front = Self::front(people, |of| Some(of.place));
-        let in_space = Self::front(people, |of| of.moved_at);
+        let time_step = simulation.frame().clock.time_step();
+        let front = Self::front(people, time_step, |of| Some(of.place));
+        let in_space = Self::front(people, time_step, |of| of.moved_at);
         let speed = |front: Option<front::Front>| front.and_then(|front| front.speed);
         let slowness = front.map(|front| front.slowness);
         let [value, error]: [fn(Estimate) -> f64; 2] = [|of| of.value, |of| of.error];
@@ -215,7 +220,7 @@ impl Measure for Front {
 
     fn data(&self, seen: &Self::Seen) -> Option<(String, Value)> {
         let data = seen.as_ref().map(|people| {
-            let front = Self::front(people, |of| Some(of.place));
+            let front = Self::front(people, 0.0, |of| Some(of.place));
             FrontData {
                 people: people.clone(),
                 slowness: front.map(|front| front.slowness.value),

@@ -127,7 +127,7 @@ pub fn lists(coarse: bool) -> Work {
             let ranges = scene.ranges(needs, &agents);
             neighbors.sort(&mut agents, ranges);
             neighbors.list_walls(&agents, frame.walls);
-            if needs.pairs.any() || needs.social || needs.walking || needs.legs || needs.density {
+            if needs.pairs.any() || needs.social || needs.walking || needs.density {
                 neighbors.list_agents();
                 packed.take_bodies(&agents, neighbors.extent(), neighbors.period(), |i| {
                     let group = &scene.groups[usize::from(agents.group[i])];
