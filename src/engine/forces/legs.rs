@@ -239,17 +239,17 @@ impl<R: Real, S: Simd> FromAgents<R, S> {
         }
     }
 
-    /// Adds agent j, at r_ij = r_i − r_j with this square and distance, coordinate units, with its lean. Returns
-    /// `others` plus the force on bodies along r_ij.
+    /// Adds agent j, at r_ij = r_i − r_j and this distance, coordinate units, with its lean. Returns `others` plus the
+    /// force on bodies along r_ij.
     #[inline(always)]
     pub fn added_to(
         &mut self,
         simd: S,
         others: Lanes<R, S>,
-        ([dx, dy], squared, distance): ([Lanes<R, S>; 2], Lanes<R, S>, Lanes<R, S>),
+        ([dx, dy], distance): ([Lanes<R, S>; 2], Lanes<R, S>),
         (leans, j): (Leans<R>, usize),
     ) -> Lanes<R, S> {
-        let acts = squared.simd_lt(self.reach_squared);
+        let acts = dy.mul_add(dy, dx * dx).simd_lt(self.reach_squared);
         if acts.all_false() {
             return others;
         }

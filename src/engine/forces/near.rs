@@ -235,8 +235,7 @@ impl<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool, const LE
     fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], run: Run<R>, j: usize) {
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
         let tiny = splat::<R, S>(simd, R::TINY);
-        let squared = dy.mul_add(dy, dx * dx);
-        let distance = squared.max(tiny).sqrt();
+        let distance = dy.mul_add(dy, dx * dx).max(tiny).sqrt();
         let inverse = one / distance;
         let mut force = zero;
         if PRESSURE {
@@ -253,7 +252,7 @@ impl<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool, const LE
         let radius_j = spread(simd, run.radius[j]);
         force = self.contact.added_to(simd, force, distance, radius_j);
         if let Some(legs) = &mut self.legs {
-            force = legs.added_to(simd, force, ([dx, dy], squared, distance), (run.leans, j));
+            force = legs.added_to(simd, force, ([dx, dy], distance), (run.leans, j));
         }
         let force = force * inverse;
         self.along[0] = force.mul_add(dx, self.along[0]);
