@@ -259,7 +259,7 @@ impl Scene {
 
     /// The rooms of the floor, if agents choose ways by time or some doors restrict them.
     pub fn rooms(&self) -> Option<&Rooms> {
-        self.ways.as_ref()?.rooms.as_ref()
+        self.ways.as_ref()?.rooms()
     }
 
     /// Whether agents choose ways by time.

@@ -18,15 +18,19 @@ pub fn arrange<'a>(
     order: &[u32],
     spare: &mut Spare,
 ) {
-    match order.len() {
-        MANY.. => columns.for_each(|column| column.arrange(order, spare)),
-        SOME.. => {
-            let mut columns: Vec<&mut dyn Column> = columns.collect();
-            let columns = columns.par_iter_mut();
-            columns.for_each(|column| column.arrange(order, &mut Spare::default()));
-        }
-        _ => columns.for_each(|column| column.arrange(order, &mut Spare::default())),
+    if order.len() >= MANY {
+        return columns.for_each(|column| column.arrange(order, spare));
     }
+    let mut columns: Vec<&mut dyn Column> = columns.collect();
+    spare.each.resize_with(columns.len(), Spare::default);
+    let least = if order.len() >= SOME {
+        1
+    } else {
+        columns.len()
+    };
+    let each = columns.par_iter_mut().zip(&mut spare.each);
+    each.with_min_len(least)
+        .for_each(|(column, spare)| column.arrange(order, spare));
 }
 
 /// An array with one entry per agent.
@@ -43,23 +47,27 @@ pub trait Column: Send {
 
 /// Arrays of the types of columns, in which columns are arranged: allocated once, not for every sort.
 #[derive(Debug, Default)]
-pub struct Spare(HashMap<TypeId, Box<dyn Any + Send + Sync>>);
+pub struct Spare {
+    arrays: HashMap<TypeId, Box<dyn Any + Send + Sync>>,
+    /// Those of each column, if there are few agents.
+    each: Vec<Spare>,
+}
 
 impl Spare {
-    /// Types with larger values are allocated for every sort.
+    /// With many agents, arrays of larger values are allocated for every sort.
     const LARGEST: usize = size_of::<Vector>();
 
     /// An array of this type, with any values.
     fn take<T: Send + Sync + 'static>(&mut self) -> Vec<T> {
-        let array = self.0.get_mut(&TypeId::of::<T>());
+        let array = self.arrays.get_mut(&TypeId::of::<T>());
         let array = array.and_then(|array| array.downcast_mut::<Vec<T>>());
         array.map(std::mem::take).unwrap_or_default()
     }
 
     /// Gives an array back.
     fn put<T: Send + Sync + 'static>(&mut self, array: Vec<T>) {
-        if size_of::<T>() <= Self::LARGEST {
-            self.0.insert(TypeId::of::<T>(), Box::new(array));
+        if size_of::<T>() <= Self::LARGEST || array.len() < MANY {
+            self.arrays.insert(TypeId::of::<T>(), Box::new(array));
         }
     }
 }

@@ -221,9 +221,9 @@ impl Crowd {
         let toward = plans.map(|(plan, &p)| {
             let plan = plan.as_ref()?;
             let step = plan.toward?;
-            // It may have left its triangle since the last coarse frame.
-            let here = rooms.floor.locate_from(plan.triangle, p);
-            let length = rooms.length_to(p, here.unwrap_or(plan.triangle), step);
+            // It may have left its triangle since it was located.
+            let here = rooms.floor.locate_or_nearest(Some(plan.triangle), p)?;
+            let length = rooms.length_to(p, here, step);
             Some((step as usize, length.unwrap_or(0.0)))
         });
         let lengths = lengths_of(toward.collect(), rooms.steps() as usize);

@@ -249,7 +249,7 @@ impl Chooser<'_> {
     fn expect_waits(&self, prospects: &mut [Prospect], before: Option<u16>) {
         let mut known = None;
         let mut wait = |prospect: &mut Prospect| {
-            let to = (self.agent, prospect.place);
+            let to = (self.agent, prospect.place, prospect.length);
             let expected = prospect.expected.as_mut()?;
             if let Some(walking) = self.crowd.time_to(self.scene, to, &mut known) {
                 expected.walking_secs = walking;

@@ -15,7 +15,7 @@ use crate::engine::journeys::Status;
 use crate::engine::neighbors::{BLOCK, TASK};
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Scene;
-use crate::engine::ways::{Leaving, Plan, Rooms, Step, Ways};
+use crate::engine::ways::{Known, Leaving, Plan, Rooms, Step, Ways};
 
 /// Agents compare their ways again after a random time in this range, seconds.
 const AGAIN: [f64; 2] = [2.0, 5.0];
@@ -56,7 +56,11 @@ struct Due {
     /// The triangles where it was and where it is.
     from: Option<u32>,
     here: u32,
+    /// How far it can move without leaving its room, meters.
+    clear: f64,
     goal: u16,
+    /// The frame in which it is due again.
+    again: u64,
     /// The ways that it compares.
     leaving: Leaving,
 }
@@ -68,7 +72,7 @@ impl Simulation {
         let Some(ways) = &scene.ways else {
             return;
         };
-        if ways.rooms.is_none() || !crowd.decides() {
+        if ways.rooms().is_none() || !crowd.decides() {
             return;
         }
         self.stages.time(Stage::Ways, || {
@@ -85,7 +89,11 @@ impl Simulation {
         let plan = crowd.agents.plan.get(i).copied().flatten()?;
         let ways = scene.ways.as_ref()?;
         let p = crowd.agents.position[i];
-        let leaving = ways.leaving((p, plan.triangle), plan.goal, None)?;
+        let here = ways
+            .rooms()?
+            .floor
+            .locate_or_nearest(Some(plan.triangle), p)?;
+        let leaving = ways.leaving((p, here), plan.goal, Known::default())?;
         Some(Comparison {
             plan,
             shortest: leaving.shortest.and_then(|shortest| shortest.step),
@@ -96,7 +104,7 @@ impl Simulation {
 
 impl Crowd {
     fn compare_ways(&mut self, scene: &Scene, ways: &Ways) {
-        let Some(rooms) = &ways.rooms else {
+        let Some(rooms) = ways.rooms() else {
             return;
         };
         let progress = &mut self.progress;
@@ -104,7 +112,7 @@ impl Crowd {
             .steps
             .resize_with(rooms.steps() as usize, Stream::default);
         progress.onward.resize(rooms.goals(), Vec::new());
-        let due = self.due(ways, rooms);
+        let due = self.due(scene, ways, rooms);
         if bound::is_due(&self.clock) {
             self.look_ahead(scene, rooms);
         }
@@ -144,10 +152,10 @@ impl Crowd {
 
     /// The agents that enter a room, have a new goal or compare their ways again, in a fixed order. The others only
     /// note where they are.
-    fn due(&mut self, ways: &Ways, rooms: &Rooms) -> Vec<Due> {
+    fn due(&mut self, scene: &Scene, ways: &Ways, rooms: &Rooms) -> Vec<Due> {
         let mut plans = std::mem::take(&mut self.agents.plan);
         plans.resize(self.agents.len(), None);
-        let (agents, frame) = (&self.agents, self.clock.frame());
+        let (crowd, agents, frame) = (&*self, &self.agents, self.clock.frame());
         let all = plans.par_iter_mut().with_min_len(TASK * BLOCK).enumerate();
         let due = all.filter_map(|(agent, plan)| {
             let trip = agents.trip.get(agent).and_then(Option::as_ref);
@@ -158,28 +166,39 @@ impl Crowd {
                 .then(|| ways.map_to(agents.destination(agent)))
                 .flatten();
             let p = agents.position[agent];
-            let before = plan.map(|plan| plan.triangle);
-            let here = match before {
-                Some(before) => rooms.floor.locate_from(before, p),
-                None => rooms.floor.locate(p),
+            let goes_on = |plan: &Plan| Some(plan.goal) == goal && plan.decides_at > frame;
+            if plan.is_some_and(|plan| goes_on(&plan) && plan.stays_at(p)) {
+                return None;
+            }
+            let goes_on = |plan: &Plan| {
+                goes_on(plan) || Some(plan.goal) == goal && has_no_choice(plan, rooms)
             };
-            let (Some(goal), Some(here)) = (goal, here.or_else(|| rooms.floor.nearest(p))) else {
+            let from = plan.map(|plan| plan.triangle);
+            let here = rooms.floor.locate_or_nearest(from, p);
+            let (Some(goal), Some(here)) = (goal, here) else {
                 *plan = None;
                 return None;
             };
-            if let Some(plan) = plan {
-                let stays = rooms.room(plan.triangle) == rooms.room(here);
-                if stays && plan.goal == goal && plan.decides_at > frame {
-                    plan.triangle = here;
-                    return None;
+            let clear = rooms.clear(here, p);
+            if let Some(plan) = plan
+                && rooms.room(plan.triangle) == rooms.room(here)
+                && goes_on(plan)
+            {
+                (plan.triangle, plan.located, plan.clear) = (here, p, clear);
+                if plan.decides_at <= frame {
+                    plan.decides_at = crowd.due_again(scene, agent, Some(*plan));
+                    plan.turns += 1;
                 }
+                return None;
             }
             Some(Due {
                 agent,
-                from: before,
+                from,
                 here,
+                clear,
                 goal,
-                leaving: ways.leaving((p, here), goal, None)?,
+                again: crowd.due_again(scene, agent, *plan),
+                leaving: ways.leaving((p, here), goal, Known::default())?,
             })
         });
         let mut due: Vec<Due> = due.collect();
@@ -189,17 +208,27 @@ impl Crowd {
         due
     }
 
+    /// The frame in which agent `i` is due again, with plan `old` so far.
+    fn due_again(&self, scene: &Scene, i: usize, old: Option<Plan>) -> u64 {
+        let turn = u64::from(turns(old));
+        let mut random = random::stream(scene.seed, Purpose::Plan, self.agents.id[i], turn);
+        let [least, most] = if old.is_none() { FIRST_AGAIN } else { AGAIN };
+        let again = self.clock.time() + random.random_range(least..most);
+        self.clock.coarse_frame_at(again)
+    }
+
     /// An agent that is due compares its ways; `afresh`: whatever it has planned.
     fn plan(&mut self, scene: &Scene, due: &Due, afresh: bool) {
         let &Due {
             agent: i,
             here,
+            clear,
             goal,
+            again,
             ref leaving,
             ..
         } = due;
-        let rooms = scene.ways.as_ref().and_then(|ways| ways.rooms.as_ref());
-        let (Some(ways), Some(rooms)) = (&scene.ways, rooms) else {
+        let (Some(ways), Some(rooms)) = (&scene.ways, scene.rooms()) else {
             return;
         };
         if self.progress.onward[usize::from(goal)].is_empty()
@@ -242,19 +271,19 @@ impl Crowd {
         let is_elsewhere = shortest.is_none_or(|step| step != toward);
         let detours =
             chosen.is_some_and(|way| is_elsewhere || scene.by_time() && is_crowded(&way, rooms));
-        let turns = old.map_or(0, |old| old.turns) + 1;
-        let id = self.agents.id[i];
-        let mut random = random::stream(scene.seed, Purpose::Plan, id, u64::from(turns));
-        let [least, most] = if old.is_none() { FIRST_AGAIN } else { AGAIN };
-        let again = self.clock.time() + random.random_range(least..most);
         let plan = Plan {
             triangle: here,
+            located: p,
+            clear,
             goal,
             toward,
             crossed,
             detours,
-            decides_at: self.clock.coarse_frame_at(again),
-            turns,
+            decides_at: match afresh {
+                true => self.due_again(scene, i, old),
+                false => again,
+            },
+            turns: turns(old),
             changes: old.map_or(0, |old| old.changes) + u32::from(changes),
         };
         let to = self.agents.destination(i);
@@ -279,6 +308,19 @@ impl Crowd {
         }
         self.agents.plan[i] = Some(plan);
     }
+}
+
+/// Whether an agent with this plan leaves its room as planned, whatever it expects: there is no other way, and where one
+/// walks behind the other, none to use the width of the opening.
+fn has_no_choice(plan: &Plan, rooms: &Rooms) -> bool {
+    let only = rooms.only_step(rooms.room(plan.triangle), usize::from(plan.goal));
+    let is_narrow = |step: Step| rooms.opening(step).width() < SINGLE_FILE;
+    !plan.detours && plan.toward == only && only.is_some_and(is_narrow)
+}
+
+/// The number of comparisons of an agent with this one, after those of plan `old`.
+fn turns(old: Option<Plan>) -> u32 {
+    old.map_or(0, |old| old.turns) + 1
 }
 
 /// Whether a crowd stands before the opening of a way, and several people pass it beside each other.

@@ -4,7 +4,7 @@ use super::bound;
 use super::{Crowd, Progress, Simulation};
 use crate::engine::math::Vector;
 use crate::engine::scene::{Knowledge, Scene};
-use crate::engine::ways::{Destination, Leaving, Rooms, Step};
+use crate::engine::ways::{Destination, Known, Leaving, Rooms, Step};
 
 /// Waiting before a closed door is expected to take this long, seconds.
 const CLOSED: f64 = 3600.0;
@@ -153,11 +153,10 @@ impl Simulation {
         let onward = times.onward(goal);
         let (mut points, mut here, mut back) = (Vec::new(), p, None);
         for _ in 0..=rooms.steps() {
-            let at = rooms.floor.locate(here);
-            let Some(t) = at.or_else(|| rooms.floor.nearest(here)) else {
+            let Some(t) = rooms.floor.locate_or_nearest(None, here) else {
                 break;
             };
-            let Some(leaving) = ways.leaving((here, t), goal as u16, None) else {
+            let Some(leaving) = ways.leaving((here, t), goal as u16, Known::default()) else {
                 break;
             };
             let mut all = times.outlooks(&leaving, (goal, &onward), scene.preferred_speed);
@@ -229,24 +228,27 @@ impl Crowd {
         times.outlooks(leaving, (goal, onward), speed)
     }
 
-    /// The time that agent `i` expects for the way to a goal, seconds; `None` if it is not known. Keeps what other
-    /// goals share in `known`.
+    /// The time that agent `i` expects for the way to a goal, seconds, whose length is `length` meters; `None` if it is
+    /// not known. Keeps what other goals share in `known`.
     pub(super) fn time_to(
         &self,
         scene: &Scene,
-        (i, goal): (usize, u16),
+        (i, goal, length): (usize, u16, f64),
         known: &mut Option<(u32, Leaving)>,
     ) -> Option<f64> {
         let rooms = scene.rooms().filter(|_| scene.by_time())?;
         let p = self.agents.position[i];
         let plan = self.agents.plan.get(i).copied().flatten();
-        let locate = || match plan {
-            Some(plan) => rooms.floor.locate_from(plan.triangle, p),
-            None => rooms.floor.locate(p),
+        let locate = || {
+            let before = plan.map(|plan| plan.triangle);
+            rooms.floor.locate_or_nearest(before, p)
         };
         let here = known.as_ref().map(|known| known.0).or_else(locate)?;
-        let ways = known.as_ref().map(|known| &known.1);
-        let leaving = scene.ways.as_ref()?.leaving((p, here), goal, ways)?;
+        let of_way = Known {
+            leaving: known.as_ref().map(|known| &known.1),
+            length: Some(length),
+        };
+        let leaving = scene.ways.as_ref()?.leaving((p, here), goal, of_way)?;
         let all = self.outlooks_of(scene, i, (goal, &leaving));
         *known = Some((here, leaving));
         all.into_iter()

@@ -1,8 +1,11 @@
 //! The points of ways.
 
+use rayon::prelude::*;
+
 use super::Step;
 use super::floor::Floor;
 use super::map::{Next, PathMap};
+use super::rooms::Rooms;
 use super::route::{Destination, Route, Ways};
 use crate::engine::math::Vector;
 
@@ -30,6 +33,15 @@ pub struct Leaving {
     pub shortest: Option<Shortest>,
 }
 
+/// What is known of the ways from a position to a goal.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Known<'a> {
+    /// The ways to another goal from there.
+    pub leaving: Option<&'a Leaving>,
+    /// The length of the shortest way, meters.
+    pub length: Option<f64>,
+}
+
 impl Leaving {
     /// The lengths for a step, meters, if it is one of these ways.
     pub fn through(&self, step: Step) -> Option<[f64; 2]> {
@@ -47,38 +59,53 @@ impl Ways {
         })
     }
 
+    /// Divides the floor into rooms.
+    pub fn divide(&mut self, rooms: Rooms) {
+        let mesh = &rooms.floor.mesh;
+        let triangles = (0..mesh.triangles().len() as u32).into_par_iter();
+        let beneath = triangles.map(|t| self.floor.locate_or_nearest(None, mesh.middle(t)));
+        self.beneath = beneath.map(Option::unwrap_or_default).collect();
+        self.rooms = Some(rooms);
+    }
+
+    /// The rooms of the floor, if it is divided.
+    pub fn rooms(&self) -> Option<&Rooms> {
+        self.rooms.as_ref()
+    }
+
     /// The ways out of the room of `p`, in triangle `t` of the rooms, that lead to the goal of a path map, and the
-    /// shortest of all ways; `None` without rooms. `known`: those to another goal from there.
-    pub fn leaving(
-        &self,
-        (p, t): (Vector, u32),
-        map: u16,
-        known: Option<&Leaving>,
-    ) -> Option<Leaving> {
+    /// shortest of all ways; `None` without rooms.
+    pub fn leaving(&self, (p, t): (Vector, u32), map: u16, known: Known) -> Option<Leaving> {
         let (rooms, goal) = (self.rooms.as_ref()?, usize::from(map));
         let steps = rooms.steps_out(rooms.room(t)).iter();
         let steps = steps.filter(|&&step| rooms.length_from(step, goal).is_finite());
         let through = steps.filter_map(|&step| {
-            let known = known.and_then(|known| known.through(step));
+            let known = known.leaving.and_then(|known| known.through(step));
             Some((step, known.or_else(|| rooms.lengths_to(p, t, step))?))
         });
         let (direct, through) = (
             rooms.length_to_goal(p, t, goal),
             through.collect::<Vec<_>>(),
         );
-        let shortest = self.from(map, p).map(|way| {
-            let step = match through[..] {
-                [(only, _)] if direct.is_none() && !rooms.has_one_way() => Some(only),
-                _ => {
-                    let points = points(&self.floor, &self.maps[goal], way.next);
-                    rooms.first_crossing(p, t, points).map(|first| first.step)
-                }
-            };
-            Shortest {
-                step,
-                length: way.length,
+        let only = match through[..] {
+            [(only, _)] if direct.is_none() && !rooms.has_one_way() => Some(only),
+            _ => None,
+        };
+        let shortest = match known.length.filter(|_| only.is_some()) {
+            Some(length) => Some(Shortest { step: only, length }),
+            None => {
+                let beneath = self.beneath[t as usize];
+                let here = self.floor.locate_or_nearest(Some(beneath), p)?;
+                let way = self.maps[goal].way(&self.floor, p, here, None);
+                way.map(|way| Shortest {
+                    step: only.or_else(|| {
+                        let points = points(&self.floor, &self.maps[goal], way.next);
+                        rooms.first_crossing(p, t, points).map(|first| first.step)
+                    }),
+                    length: way.length,
+                })
             }
-        });
+        };
         Some(Leaving {
             direct,
             through,

@@ -1,6 +1,7 @@
 //! Where ways cross openings.
 
 use super::Step;
+use super::rooms::Rooms;
 use crate::engine::math::{Vector, direction};
 
 /// Where a way crosses an opening.
@@ -14,9 +15,34 @@ pub struct Crossing {
     pub at: Vector,
 }
 
+impl Rooms {
+    /// Where a way over `points` from `p` first leaves the room of triangle `t`; `None` if it stays there.
+    pub fn first_crossing(
+        &self,
+        p: Vector,
+        t: u32,
+        points: impl IntoIterator<Item = Vector>,
+    ) -> Option<Crossing> {
+        let (steps, mut from) = (self.steps_out(self.room(t)), p);
+        let mut points = beside_corners(p, points).enumerate();
+        points.find_map(|(after, to)| {
+            let straight = [std::mem::replace(&mut from, to), to];
+            let part = |step: Step| {
+                let pieces = self.opening(step).pieces.iter();
+                let crossed = pieces.filter_map(|&piece| crossing(piece, straight));
+                Some((crossed.reduce(f64::min)?, step))
+            };
+            let crossed = steps.iter().filter_map(|&step| part(step));
+            let (part, step) = crossed.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            let at = straight[0] + part * (to - straight[0]);
+            Some(Crossing { step, after, at })
+        })
+    }
+}
+
 /// The points of a way from `p`, whose corners are moved off their walls: openings end at corners, and walls go on
 /// behind them.
-pub fn beside_corners(
+fn beside_corners(
     p: Vector,
     points: impl IntoIterator<Item = Vector>,
 ) -> impl Iterator<Item = Vector> {
@@ -39,7 +65,7 @@ const OFF_WALLS: f64 = 1e-3;
 const TOUCHING: f64 = 1e-7;
 
 /// The part of a straight way before it crosses an opening; `None` if it does not.
-pub fn crossing([a, b]: [Vector; 2], [from, to]: [Vector; 2]) -> Option<f64> {
+fn crossing([a, b]: [Vector; 2], [from, to]: [Vector; 2]) -> Option<f64> {
     let (along, way) = (b - a, to - from);
     let across = way.perp(&along);
     let part = (a - from).perp(&along) / across;

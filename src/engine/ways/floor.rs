@@ -150,6 +150,15 @@ impl Floor {
         self.locate(p)
     }
 
+    /// The triangle that contains `p`, looked for near triangle `before` first, or the nearest one to a point in a wall.
+    pub fn locate_or_nearest(&self, before: Option<u32>, p: Vector) -> Option<u32> {
+        let here = match before {
+            Some(before) => self.locate_from(before, p),
+            None => self.locate(p),
+        };
+        here.or_else(|| self.nearest(p))
+    }
+
     /// The triangle nearest to a point, such as one in a wall.
     pub fn nearest(&self, p: Vector) -> Option<u32> {
         self.grid.nearest(&self.mesh, p)

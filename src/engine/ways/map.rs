@@ -171,7 +171,7 @@ impl PathMap {
 
     /// The way from a position, on the floor or in a wall.
     pub fn way_from(&self, floor: &Floor, p: Vector) -> Option<Way> {
-        let here = floor.locate(p).or_else(|| floor.nearest(p))?;
+        let here = floor.locate_or_nearest(None, p)?;
         self.way(floor, p, here, None)
     }
 

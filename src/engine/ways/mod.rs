@@ -34,7 +34,7 @@ mod steer;
 mod targets;
 
 pub use corner::{Bend, Corner, Turn};
-pub use course::Leaving;
+pub use course::{Known, Leaving};
 pub use cuts::Door;
 pub use floor::Floor;
 pub use goal::Goal;

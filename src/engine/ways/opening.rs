@@ -9,7 +9,7 @@ use super::cuts::{Closed, Cuts};
 use super::floor::Floor;
 use super::goal::Goal;
 use super::map::PathMap;
-use super::mesh::side;
+use super::mesh::{side, to_segment};
 use crate::engine::math::{Vector, direction, perpendicular};
 
 /// Lines are shortened by this at both ends, meters.
@@ -49,6 +49,13 @@ impl Opening {
     /// Its straight parts, meters.
     pub fn pieces(&self) -> &[[Vector; 2]] {
         &self.pieces
+    }
+
+    /// Its distance from `p`, meters.
+    pub fn distance(&self, p: Vector) -> f64 {
+        let pieces = self.pieces.iter();
+        let distances = pieces.map(|&[a, b]| to_segment(p, a, b));
+        distances.fold(f64::INFINITY, f64::min)
     }
 
     /// The number of its place, if it is a door of the scene.

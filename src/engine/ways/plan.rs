@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::opening::Step;
 use super::route::{Destination, Ways};
+use crate::engine::math::Vector;
 
 /// Another way than the shortest one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -17,8 +18,12 @@ pub enum Detour {
 /// The plan of an agent: how it leaves its room.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// The triangle of the rooms' floor where the agent is.
+    /// The triangle of the rooms' floor where the agent was when it was last located.
     pub triangle: u32,
+    /// Where that was, and how far it can move from there without leaving its room, meters.
+    pub located: Vector,
+    /// See [`located`](Self::located).
+    pub clear: f64,
     /// The number of the path map to its goal.
     pub goal: u16,
     /// The step by which it wants to leave the room; `None`: its goal is in the room.
@@ -37,6 +42,11 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Whether an agent at `p` is still in the room where it was last located.
+    pub fn stays_at(&self, p: Vector) -> bool {
+        (p - self.located).norm_squared() < self.clear * self.clear
+    }
+
     /// The way to a destination, if the plan leads there and not by the shortest way.
     pub fn detour(&self, ways: &Ways, to: Destination) -> Option<Detour> {
         let is_known = self.detours && ways.map_to(to) == Some(self.goal);

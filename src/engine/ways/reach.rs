@@ -25,7 +25,7 @@ impl Ways {
     /// floor's least width. If this holds for all places, as in a niche that an agent was pushed into, the lengths are
     /// those of the ways out through any passage.
     pub fn lengths(&self, p: Vector, places: &[u16]) -> Vec<f64> {
-        let here = self.floor.locate(p).or_else(|| self.floor.nearest(p));
+        let here = self.floor.locate_or_nearest(None, p);
         let ways = places.iter().map(|&place| {
             let map = self.map_to(Destination::Place(place))?;
             self.maps[usize::from(map)].way(&self.floor, p, here?, None)

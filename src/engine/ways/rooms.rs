@@ -12,18 +12,22 @@ use rayon::prelude::*;
 
 use super::WayError;
 use super::course::{end, points};
-use super::crossing::{Crossing, beside_corners, crossing};
 use super::cuts::{Cuts, Door, parts};
 use super::floor::Floor;
 use super::goal::Goal;
 use super::map::PathMap;
-use super::mesh::{Mesh, to_segment};
+use super::mesh::Mesh;
 use super::opening::{MARGIN, Opening, Step, on_both_sides, openings};
 use crate::engine::geometry::Area;
 use crate::engine::math::{Vector, direction, perpendicular};
 
 /// Wider passages are no openings, meters: the walk through them takes no waiting that counts.
 pub const WIDEST: f64 = 6.0;
+/// Agents that are farther from all openings of their room count as this far, meters.
+const CLEAR: f64 = 2.0;
+/// Agents are less deep in walls, meters.
+const IN_WALLS: f64 = 0.5;
+
 /// The rooms of a floor, and the ways in them.
 #[derive(Debug, Clone)]
 pub struct Rooms {
@@ -36,6 +40,8 @@ pub struct Rooms {
     /// The steps out of each room, and those of them that can be taken.
     around: Vec<Vec<Step>>,
     out: Vec<Vec<Step>>,
+    /// For each triangle, the openings of its room near it.
+    near: Vec<Vec<u32>>,
     /// For each step, the steps that can come before it in its room, with the length of the way between the middles of
     /// their openings, meters.
     before: Vec<Vec<(Step, f64)>>,
@@ -72,6 +78,7 @@ impl Rooms {
         let mut rooms = Self {
             around: vec![Vec::new(); count as usize],
             out: vec![Vec::new(); count as usize],
+            near: Vec::new(),
             before: vec![Vec::new(); 2 * openings.len()],
             goals: Vec::new(),
             last: Vec::new(),
@@ -88,6 +95,8 @@ impl Rooms {
                 rooms.out[source].push(step);
             }
         }
+        let triangles = (0..rooms.of_triangle.len() as u32).into_par_iter();
+        rooms.near = triangles.map(|t| rooms.openings_near(t)).collect();
         let before = (0..rooms.steps()).into_par_iter();
         rooms.before = before.map(|step| rooms.steps_before(step)).collect();
         for goals in goals {
@@ -126,7 +135,7 @@ impl Rooms {
     /// The length of the shortest way from `p` to a goal that passes one-way doors in their direction only, meters;
     /// infinite without one. Measured over the middles of openings.
     pub fn length(&self, p: Vector, goal: usize) -> f64 {
-        let Some(t) = self.floor.locate(p).or_else(|| self.floor.nearest(p)) else {
+        let Some(t) = self.floor.locate_or_nearest(None, p) else {
             return f64::INFINITY;
         };
         let direct = self.length_to_goal(p, t, goal);
@@ -213,6 +222,16 @@ impl Rooms {
         &self.out[room as usize]
     }
 
+    /// The step out of a room by which all ways to a goal leave it; `None` if there are several, or the goal is there.
+    pub fn only_step(&self, room: u32, goal: usize) -> Option<Step> {
+        let steps = self.steps_out(room).iter();
+        let mut steps = steps.filter(|&&step| self.length_from(step, goal).is_finite());
+        let only = steps.next().filter(|_| steps.next().is_none())?;
+        let mut last = self.last[goal].iter();
+        let is_here = last.any(|&(step, _)| self.target(step) == room);
+        (!is_here && !self.has_one_way).then_some(*only)
+    }
+
     /// The length of the longest way from another opening of its room to the opening of a step, meters; infinite if the
     /// room has no other.
     pub fn depth(&self, step: Step) -> f64 {
@@ -224,12 +243,32 @@ impl Rooms {
     pub fn step_between(&self, from: u32, to: u32, p: Vector) -> Option<Step> {
         let steps = self.around[from as usize].iter().copied();
         let steps = steps.filter(|&step| self.target(step) == to);
-        let distance = |step: Step| {
-            let pieces = self.opening(step).pieces.iter();
-            let each = pieces.map(|&[a, b]| to_segment(p, a, b));
-            each.fold(f64::INFINITY, f64::min)
-        };
+        let distance = |step| self.opening(step).distance(p);
         steps.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+    }
+
+    /// A distance, at most [`CLEAR`] meters, that an agent at `p` in triangle `t` can move without leaving its room.
+    pub fn clear(&self, t: u32, p: Vector) -> f64 {
+        let near = self.near[t as usize].iter();
+        let distances = near.map(|&k| self.openings[k as usize].distance(p));
+        distances.fold(CLEAR, f64::min)
+    }
+
+    /// The openings of its room near triangle `t`.
+    fn openings_near(&self, t: u32) -> Vec<u32> {
+        let mesh = &self.floor.mesh;
+        let middle = mesh.middle(t);
+        let corners = mesh.corners(t);
+        let radius = corners
+            .iter()
+            .map(|c| (c - middle).norm())
+            .fold(0.0, f64::max);
+        let around = self.around[self.room(t) as usize].iter();
+        let near = around.map(|step| step / 2).filter(|&k| {
+            let distance = self.openings[k as usize].distance(middle);
+            distance < radius + CLEAR + IN_WALLS
+        });
+        near.collect()
     }
 
     /// The length of the way from `p` in triangle `t` to the opening of a step, inside of the room, meters.
@@ -274,29 +313,6 @@ impl Rooms {
         }
     }
 
-    /// Where a way over `points` from `p` first leaves the room of triangle `t`; `None` if it stays there.
-    pub fn first_crossing(
-        &self,
-        p: Vector,
-        t: u32,
-        points: impl IntoIterator<Item = Vector>,
-    ) -> Option<Crossing> {
-        let (steps, mut from) = (self.steps_out(self.room(t)), p);
-        let mut points = beside_corners(p, points).enumerate();
-        points.find_map(|(after, to)| {
-            let straight = [std::mem::replace(&mut from, to), to];
-            let part = |step: Step| {
-                let pieces = self.opening(step).pieces.iter();
-                let crossed = pieces.filter_map(|&piece| crossing(piece, straight));
-                Some((crossed.reduce(f64::min)?, step))
-            };
-            let crossed = steps.iter().filter_map(|&step| part(step));
-            let (part, step) = crossed.min_by(|a, b| a.0.total_cmp(&b.0))?;
-            let at = straight[0] + part * (to - straight[0]);
-            Some(Crossing { step, after, at })
-        })
-    }
-
     /// For each step, the least time from its opening to a goal, seconds; infinite without a way. `leg` gives the time
     /// from the middle of an opening over a way of some length to the end of a step, or to the goal (`None`).
     pub fn onward(&self, goal: usize, leg: impl Fn(Option<Step>, f64) -> f64) -> Vec<f64> {
@@ -331,7 +347,12 @@ impl Rooms {
         self.floor.bytes()
             + maps.chain(&self.goals).map(PathMap::bytes).sum::<usize>()
             + before.sum::<usize>() * size_of::<(Step, f64)>()
-            + self.of_triangle.len() * size_of::<u32>()
+            + size_of_val(&self.of_triangle[..])
+            + self
+                .near
+                .iter()
+                .map(|near| size_of_val(&near[..]))
+                .sum::<usize>()
     }
 
     /// Whether agents may take a step: it does not lead through a one-way door against its direction.

@@ -40,7 +40,9 @@ pub struct Ways {
     first_goals: usize,
     pub(super) maps: Vec<PathMap>,
     /// The rooms of the floor, for ways by time and through doors.
-    pub rooms: Option<Rooms>,
+    pub(super) rooms: Option<Rooms>,
+    /// For each triangle of the rooms, the triangle of the floor at its middle.
+    pub(super) beneath: Vec<u32>,
 }
 
 /// The path map that a route follows.
@@ -132,6 +134,7 @@ impl Ways {
             goals,
             maps,
             rooms: None,
+            beneath: Vec::new(),
         })
     }
 
@@ -327,8 +330,7 @@ impl Ways {
             }
         }
         let held = route.first(floor).bend();
-        let here = floor.locate_from(route.triangle, p);
-        let here = here.or_else(|| floor.nearest(p))?;
+        let here = floor.locate_or_nearest(Some(route.triangle), p)?;
         let way = map.way(floor, p, here, held)?;
         route.triangle = here;
         route.entry = u32::try_from(way.entry).unwrap_or(u32::MAX);
@@ -366,6 +368,7 @@ impl Ways {
         let maps = self.maps.iter().map(PathMap::bytes);
         let building = self.maps.iter().map(PathMap::building_bytes).max();
         let rooms = self.rooms.as_ref().map_or(0, Rooms::bytes);
+        let rooms = rooms + size_of_val(&self.beneath[..]);
         self.floor.bytes() + maps.sum::<usize>() + building.unwrap_or_default() + rooms
     }
 }

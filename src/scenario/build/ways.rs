@@ -106,7 +106,8 @@ pub fn ways(
     };
     let mut ways = prepared.ways(prepared.width)?;
     if scene.by_time() || !keys.doors.is_empty() {
-        ways.rooms = Some(prepared.rooms(&ways)?);
+        let rooms = prepared.rooms(&ways)?;
+        ways.divide(rooms);
     }
     prepared.check_goals(&ways)?;
     notes.extend(prepared.check_journeys(&ways)?);
