@@ -1,5 +1,6 @@
 //! The picture of a study's answers.
 
+use super::Answer;
 use super::costs::name;
 use super::pictures::color;
 use super::rows::Answers;
@@ -59,43 +60,45 @@ impl Answers<'_> {
         )
     }
 
-    /// Total errors of a result, in percent, over the times that all results take with these errors.
+    /// Total errors of a result, in percent, over the times that all results take with these errors: those of presets if
+    /// the error of their step is known, and for the paper's also if it must be found.
     fn costs_of(&self, k: usize, result: &str) -> Option<Panel> {
         let (_, first) = self.rows.first()?;
         if first.costs.is_empty() {
             return None;
         }
-        let percent = |answer: &super::Answer| {
+        let percent = |answer: &Answer| {
             let reached = answer.results[k].reached;
             100.0 * reached.error / reached.value.abs()
         };
         let answers = || self.rows.iter().map(|(_, answer)| answer);
-        let of_preset = |number: usize| -> Vec<[f64; 2]> {
-            let points = answers()
-                .filter_map(|answer| Some([answer.costs.get(number)?.all_secs?, percent(answer)]));
+        let at = |secs: &dyn Fn(&Answer) -> Option<f64>| -> Vec<[f64; 2]> {
+            let points = answers().filter_map(|answer| Some([secs(answer)?, percent(answer)]));
             points.collect()
         };
-        let own: Vec<[f64; 2]> = answers().map(|a| [a.secs, percent(a)]).collect();
-        let mut all = own.clone();
-        let mut marks = Vec::new();
-        for (number, cost) in first.costs.iter().enumerate() {
-            let points = of_preset(number);
+        let mut all = at(&|answer| Some(answer.secs));
+        let estimates = Style::broken(line_color(0), 3.0, "estimate");
+        let mut marks = vec![Mark::dots(all.clone(), estimates)];
+        let mut add = |secs: &dyn Fn(&Answer) -> Option<f64>, style: Style| {
+            let points = at(secs);
             all.extend(&points);
+            marks.push(Mark::dots(points, style));
+        };
+        for (number, cost) in first.costs.iter().enumerate() {
             let preset: Preset = cost.timed.preset;
-            marks.push(Mark::dots(
-                points,
-                Style::full(color(preset), 2.2, &name(preset)),
-            ));
+            let known = |answer: &Answer| answer.costs.get(number)?.all_secs;
+            add(&known, Style::full(color(preset), 2.2, &name(preset)));
+            if preset == Preset::Paper {
+                let found = |answer: &Answer| Some(answer.costs.get(number)?.two_steps_secs);
+                let label = format!("{}, error of step found", name(preset));
+                add(&found, Style::broken(color(preset), 2.2, &label));
+            }
         }
-        marks.push(Mark::dots(
-            own,
-            Style::broken(line_color(0), 3.0, "estimate"),
-        ));
         let x = Axis::log("computing time [s]", around(all.iter().map(|p| p[0]), 1.3));
         let y = Axis::log(
             &format!("error of {result} [%]"),
             around(all.iter().map(|p| p[1]), 1.3),
         );
-        Some(Panel::new("", x, y, marks).with_legend(Corner::LowerLeft))
+        Some(Panel::new("", x, y, marks).with_legend(Corner::Beside))
     }
 }
