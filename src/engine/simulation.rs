@@ -16,6 +16,7 @@ mod plans;
 mod queues;
 mod schedule;
 mod schemes;
+mod sight;
 mod situation;
 mod stages;
 mod state;

@@ -4,6 +4,7 @@ use rand::Rng;
 use serde::Serialize;
 
 use super::plans::is_clearly_quicker;
+use super::sight::Sight;
 use super::{Crowd, PlaceState, Simulation, bound};
 use crate::engine::journeys::{Choice, Journey, JourneyStage, Kind, Place, Status, Trip};
 use crate::engine::math::Vector;
@@ -15,6 +16,7 @@ use crate::engine::ways::{Destination, SLACK};
 const NEAREST_EVERY: f64 = 1.0;
 /// Agents that choose the quickest place choose again after a random time in this range, seconds.
 const QUICKEST_EVERY: [f64; 2] = [2.0, 5.0];
+
 impl Simulation {
     /// The decision that agent `i` would make now about the place of its stage; `None` if it does not walk to a place.
     pub fn decision(&self, i: usize) -> Option<Decision> {
@@ -24,6 +26,7 @@ impl Simulation {
             crowd: &self.crowd,
             agent: i,
             is_asked: true,
+            sight: None,
         };
         (trip.status == Status::Walking).then(|| chooser.decide(trip, Some(trip.place)))
     }
@@ -37,6 +40,8 @@ pub(super) struct Chooser<'a> {
     pub(super) agent: usize,
     /// Whether all its expectations are asked for, or only its decision.
     pub(super) is_asked: bool,
+    /// What it sees, if that is known.
+    pub(super) sight: Option<&'a Sight>,
 }
 
 /// A place of an agent's stage, as the agent sees it.
@@ -180,7 +185,7 @@ impl Chooser<'_> {
         &self.scene.journeys.journeys[usize::from(trip.journey)]
     }
 
-    fn stage(&self, trip: &Trip) -> &JourneyStage {
+    pub(super) fn stage(&self, trip: &Trip) -> &JourneyStage {
         self.journey(trip).stage(trip.stage)
     }
 
@@ -218,7 +223,9 @@ impl Chooser<'_> {
     /// The places of the current stage of `trip`, as the agent sees them.
     fn prospects(&self, trip: &Trip) -> Vec<Prospect> {
         let places = &self.stage(trip).places;
-        let lengths = self.lengths(self.crowd.agents.position[self.agent], places);
+        let position = self.crowd.agents.position[self.agent];
+        let lengths = self.sight.map(|sight| sight.lengths.clone());
+        let lengths = lengths.unwrap_or_else(|| self.lengths(position, places));
         let seen = places.iter().zip(lengths).enumerate();
         seen.map(|(k, (&place, length))| self.see(trip, k, (place, length)))
             .collect()
@@ -247,7 +254,7 @@ impl Chooser<'_> {
     /// Adds the waits on the ways to the expected times. A place that is not clearly quicker than place `before`
     /// without them is not quicker with them: its time stays too short unless it is asked for.
     fn expect_waits(&self, prospects: &mut [Prospect], before: Option<u16>) {
-        let mut known = None;
+        let mut known = self.sight.and_then(|sight| sight.leaving.clone());
         let mut wait = |prospect: &mut Prospect| {
             let to = (self.agent, prospect.place, prospect.length);
             let expected = prospect.expected.as_mut()?;
@@ -269,7 +276,7 @@ impl Chooser<'_> {
     }
 
     /// The lengths of the ways from `p` to some places, meters; infinite where there is none.
-    fn lengths(&self, p: Vector, places: &[u16]) -> Vec<f64> {
+    pub(super) fn lengths(&self, p: Vector, places: &[u16]) -> Vec<f64> {
         match &self.scene.ways {
             Some(ways) => ways.lengths(p, places),
             None => vec![f64::INFINITY; places.len()],

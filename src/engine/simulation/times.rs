@@ -228,6 +228,30 @@ impl Crowd {
         times.outlooks(leaving, (goal, onward), speed)
     }
 
+    /// The triangle of agent `i`, and the ways out of its room that lead to a goal, if agents choose by time. The
+    /// shortest way is `length` meters long; `known`: the same for another goal.
+    pub(super) fn leaving_to(
+        &self,
+        scene: &Scene,
+        (i, goal, length): (usize, u16, f64),
+        known: Option<&(u32, Leaving)>,
+    ) -> Option<(u32, Leaving)> {
+        let rooms = scene.rooms().filter(|_| scene.by_time())?;
+        let p = self.agents.position[i];
+        let locate = || {
+            let plan = self.agents.plan.get(i).copied().flatten();
+            let before = plan.map(|plan| plan.triangle);
+            rooms.floor.locate_or_nearest(before, p)
+        };
+        let here = known.map(|known| known.0).or_else(locate)?;
+        let of_way = Known {
+            leaving: known.map(|known| &known.1),
+            length: Some(length),
+        };
+        let leaving = scene.ways.as_ref()?.leaving((p, here), goal, of_way)?;
+        Some((here, leaving))
+    }
+
     /// The time that agent `i` expects for the way to a goal, seconds, whose length is `length` meters; `None` if it is
     /// not known. Keeps what other goals share in `known`.
     pub(super) fn time_to(
@@ -236,19 +260,7 @@ impl Crowd {
         (i, goal, length): (usize, u16, f64),
         known: &mut Option<(u32, Leaving)>,
     ) -> Option<f64> {
-        let rooms = scene.rooms().filter(|_| scene.by_time())?;
-        let p = self.agents.position[i];
-        let plan = self.agents.plan.get(i).copied().flatten();
-        let locate = || {
-            let before = plan.map(|plan| plan.triangle);
-            rooms.floor.locate_or_nearest(before, p)
-        };
-        let here = known.as_ref().map(|known| known.0).or_else(locate)?;
-        let of_way = Known {
-            leaving: known.as_ref().map(|known| &known.1),
-            length: Some(length),
-        };
-        let leaving = scene.ways.as_ref()?.leaving((p, here), goal, of_way)?;
+        let (here, leaving) = self.leaving_to(scene, (i, goal, length), known.as_ref())?;
         let all = self.outlooks_of(scene, i, (goal, &leaving));
         *known = Some((here, leaving));
         all.into_iter()

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bound::{self, Stream};
 use super::choice::Chooser;
+use super::sight::Sight;
 use super::{Crowd, EventKind, Simulation, Stage};
 use crate::engine::clock::Clock;
 use crate::engine::journeys::{ChangeKind, Kind, Status, Trip, WaitingArea};
@@ -159,8 +160,10 @@ impl Crowd {
             self.begin(scene, i);
         }
         self.serve_queues(scene);
-        for i in self.where_due(|crowd, i| crowd.needs_attention(scene, i)) {
-            self.attend(scene, i);
+        let due = self.where_due(|crowd, i| crowd.needs_attention(scene, i));
+        let sights = self.sights(scene, &due);
+        for (i, sight) in due.into_iter().zip(&sights) {
+            self.attend(scene, i, sight.as_ref());
         }
     }
 
@@ -219,11 +222,11 @@ impl Crowd {
             entered: self.clock.time(),
             waited: 0.0,
         });
-        self.choose(scene, i);
+        self.choose(scene, i, None);
     }
 
-    /// Chooses a place of the current stage.
-    fn choose(&mut self, scene: &Scene, i: usize) {
+    /// Chooses a place of the current stage; `sight`: what the agent sees, if that is known.
+    fn choose(&mut self, scene: &Scene, i: usize, sight: Option<&Sight>) {
         let Some(mut trip) = self.agents.trip[i] else {
             return;
         };
@@ -232,6 +235,7 @@ impl Crowd {
             crowd: self,
             agent: i,
             is_asked: false,
+            sight: sight.filter(|sight| sight.stage == trip.stage),
         };
         let before = (trip.status == Status::Walking).then_some(trip.place);
         let (place, chooses_at) = chooser.choose(&trip, before);
@@ -278,7 +282,7 @@ impl Crowd {
         trip.chooses_at = u64::MAX;
         if usize::from(trip.stage) + 1 < stages.len() {
             trip.stage += 1;
-            self.choose(scene, i);
+            self.choose(scene, i, None);
         } else {
             trip.hold = trip.hold.or(Some(self.agents.position[i]));
         }
@@ -306,7 +310,7 @@ impl Crowd {
         }
     }
 
-    fn attend(&mut self, scene: &Scene, i: usize) {
+    fn attend(&mut self, scene: &Scene, i: usize, sight: Option<&Sight>) {
         let Some(trip) = self.agents.trip[i] else {
             return;
         };
@@ -328,7 +332,7 @@ impl Crowd {
         let frame = self.clock.frame();
         let trip = self.agents.trip[i].as_ref();
         if trip.is_some_and(|trip| trip.status == Status::Walking && trip.chooses_at <= frame) {
-            self.choose(scene, i);
+            self.choose(scene, i, sight);
         }
     }
 

@@ -24,7 +24,7 @@ use crate::engine::math::{Vector, direction, perpendicular};
 /// Wider passages are no openings, meters: the walk through them takes no waiting that counts.
 pub const WIDEST: f64 = 6.0;
 /// Agents that are farther from all openings of their room count as this far, meters.
-const CLEAR: f64 = 2.0;
+const CLEAR: f64 = 1.0;
 /// Agents are less deep in walls, meters.
 const IN_WALLS: f64 = 0.5;
 
