@@ -50,6 +50,7 @@ mod stability;
 mod stress;
 mod study_robustness;
 mod suites;
+mod swaying;
 mod sweep;
 mod sweep_pictures;
 mod sweep_program;

@@ -23,6 +23,7 @@ pub const PRODUCTS: &[Product] = &[
     figures::STUDY,
     questions::PRODUCT,
     physics::OSCILLATIONS,
+    physics::SWAYING,
     physics::START_WAVES,
     physics::QUEUE_PUSHES,
     physics::PHENOMENA,

@@ -4,6 +4,7 @@
 mod oscillations;
 mod queue_pushes;
 mod start_waves;
+mod swaying;
 
 mod phenomena;
 
@@ -14,6 +15,7 @@ pub use oscillations::PRODUCT as OSCILLATIONS;
 pub use phenomena::PRODUCT as PHENOMENA;
 pub use queue_pushes::PRODUCT as QUEUE_PUSHES;
 pub use start_waves::PRODUCT as START_WAVES;
+pub use swaying::PRODUCT as SWAYING;
 
 use super::product::save;
 use crate::analysis::statistics::{Estimate, MeanStd};

@@ -1,0 +1,308 @@
+//! People on legs in closed squares: from which density on they turn together, how fast, and how far apart.
+
+use super::super::product::{Needs, Product, save};
+use super::{grouped, mean};
+use crate::analysis::statistics::Estimate;
+use crate::lab::error::LabError;
+use crate::lab::gallery::{BAND, curve, distinct, in_cell, map, points};
+use crate::lab::sweep::{Combination, Gathered};
+use crate::output::colors::ColorMap;
+use crate::output::plot::{
+    Axis, BLACK, ColorBar, Corner, Mark, Panel, Point, Sheet, Style, line_color,
+};
+use crate::output::table::Table;
+use crate::runs::store::Store;
+
+/// What Gu et al. (2025) filmed on 50 m × 20 m: the density from which on people turn, P/m², the angular frequency with
+/// its uncertainty, rad/s, and a distance over which they turn together, meters.
+const ONSET: f64 = 4.0;
+const FREQUENCY: Point = Point {
+    x: 31.6,
+    y: 0.35,
+    error: 0.1,
+};
+const TOGETHER: f64 = 10.0;
+const PEOPLE: &str = "people, 50 m × 20 m";
+/// The least part of the power at the peak for a common frequency.
+const LEAST_SHARE: f64 = 0.5;
+/// A run has one sense of rotation from this mean spin on, and both from this root mean square on.
+const SPINS: [f64; 2] = [0.2, 0.5];
+/// The ends of the axis of sizes, meters.
+const SIDES: [f64; 2] = [7.0, 60.0];
+/// The densities with a curve over sizes, P/m².
+const CURVES: [f64; 3] = [5.0, 6.0, 7.0];
+
+/// The tables and the map of what the law can and cannot do.
+pub const PRODUCT: Product = Product {
+    name: "swaying",
+    about: "open question: from which density on do people on legs turn together in closed squares, and how fast?",
+    in_all: false,
+    studies: &["sway", "sway_large"],
+    needs: Needs::All,
+    write,
+};
+
+fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
+    let rows: Vec<Combination> = studies.iter().flat_map(Gathered::combinations).collect();
+    for study in studies {
+        study.write(store, None)?;
+    }
+    save(&sheet(&rows), store, PRODUCT.name)?;
+    let tables = [sizes(&rows), cells(&rows)].map(|table| table.markdown());
+    Ok(tables.join("\n"))
+}
+
+/// Width and height of the square, meters.
+fn sides(row: &Combination) -> Option<[f64; 2]> {
+    let corner = row.value("measurements.0.oscillation.region")?.get(1)?;
+    Some([corner.get(0)?.as_f64()?, corner.get(1)?.as_f64()?])
+}
+
+fn square(row: &Combination) -> String {
+    match sides(row) {
+        Some([width, height]) if width == height => format!("{width} m"),
+        Some([width, height]) => format!("{width} m × {height} m"),
+        None => String::new(),
+    }
+}
+
+/// √ of the area, meters.
+fn side(row: &Combination) -> Option<f64> {
+    sides(row).map(|[width, height]| (width * height).sqrt())
+}
+
+/// Whole people per square meter.
+fn density(row: &Combination) -> Option<f64> {
+    let count = |key: &str| row.value(key)?.as_f64();
+    let people = count("grids.0.columns")? * count("grids.0.rows")?;
+    Some((people / side(row)?.powi(2)).round())
+}
+
+fn values(row: &Combination, what: &str) -> Vec<f64> {
+    row.values(what).into_iter().flatten().collect()
+}
+
+fn value(row: &Combination, what: &str) -> Option<Estimate> {
+    Estimate::of_mean(&values(row, what))
+}
+
+fn correlation(row: &Combination) -> Option<Estimate> {
+    value(row, "oscillation_correlation_m")
+}
+
+/// The frequency of people who turn together: most of the power is at one peak, and the correlation reaches as far as
+/// in the film, or through the whole square (the centers of its boxes of 2 m).
+fn frequency(row: &Combination) -> Option<Estimate> {
+    let longest = sides(row)?.into_iter().fold(0.0, f64::max) - 2.0;
+    let has_peak = mean(row, "oscillation_peak_share")?.mean >= LEAST_SHARE;
+    let reaches = correlation(row)?.value >= TOGETHER.min(0.99 * longest);
+    value(row, "oscillation_peak_rad_per_s").filter(|_| has_peak && reaches)
+}
+
+/// How many runs turn to the left, to the right, in both senses at once, and in none.
+fn senses(row: &Combination) -> [usize; 4] {
+    let [one, both] = SPINS;
+    let all = values(row, "oscillation_spin_rms");
+    let mut counts = [0; 4];
+    for (spin, all) in values(row, "oscillation_spin").into_iter().zip(all) {
+        let sense = match spin {
+            _ if spin >= one => 0,
+            _ if spin <= -one => 1,
+            _ if all >= both => 2,
+            _ => 3,
+        };
+        counts[sense] += 1;
+    }
+    counts
+}
+
+fn written(counts: [usize; 4]) -> String {
+    counts.map(|count| count.to_string()).join(", ")
+}
+
+/// What was filmed, and for each square the densities at which its people turn together.
+fn sizes(rows: &[Combination]) -> Table {
+    let filmed = [PEOPLE, "4 ± 1", "0.35 ± 0.1", "> 10", "both"].map(str::to_owned);
+    let of_square = |(name, rows): (String, Vec<&Combination>)| {
+        let together: Vec<_> = rows.iter().filter(|row| frequency(row).is_some()).collect();
+        let densities: Vec<String> = together
+            .iter()
+            .filter_map(|row| density(row).map(|of| of.to_string()))
+            .collect();
+        let range = |values: Vec<f64>, digits: usize| {
+            let low = values.iter().copied().reduce(f64::min)?;
+            let high = values.iter().copied().reduce(f64::max)?;
+            Some(format!("{low:.digits$} to {high:.digits$}"))
+        };
+        let means = |of: fn(&Combination) -> Option<Estimate>| -> Vec<f64> {
+            let means = together.iter().filter_map(|row| of(row));
+            means.map(|of| of.value).collect()
+        };
+        let mut counts = [0; 4];
+        for row in &together {
+            for (sum, count) in counts.iter_mut().zip(senses(row)) {
+                *sum += count;
+            }
+        }
+        let none = || "–".to_owned();
+        [
+            name,
+            Some(densities.join(", "))
+                .filter(|list| !list.is_empty())
+                .unwrap_or_else(none),
+            range(means(frequency), 2).unwrap_or_else(none),
+            range(means(correlation), 1).unwrap_or_else(none),
+            if together.is_empty() {
+                none()
+            } else {
+                written(counts)
+            },
+        ]
+    };
+    let squares = grouped(rows, square).into_iter().map(of_square);
+    let all: Vec<[String; 5]> = [filmed].into_iter().chain(squares).collect();
+    let column = |k: usize| move |row: &[String; 5]| row[k].clone();
+    Table::of(&all)
+        .column("square", column(0))
+        .column("people turn together at [P/m²]", column(1))
+        .column("frequency there [rad/s]", column(2))
+        .column("correlation there [m]", column(3))
+        .column("runs there to the left, right, both, none", column(4))
+        .table()
+}
+
+/// All cells of the studies.
+fn cells(rows: &[Combination]) -> Table {
+    let mean = |what: &'static str| move |row: &Combination| mean(row, what).map(|of| of.mean);
+    let speed = mean("oscillation_speed_m_per_s");
+    Table::of(rows)
+        .column("square, density", |row| row.label().to_owned())
+        .column("runs", |row| row.results.len())
+        .fixed("velocity [mm/s]", 0, move |row| {
+            speed(row).map(|of| 1000.0 * of)
+        })
+        .fixed("peak [rad/s]", 2, |row| {
+            value(row, "oscillation_peak_rad_per_s")
+        })
+        .fixed("power at the peak", 2, mean("oscillation_peak_share"))
+        .fixed("spin, root mean square", 2, mean("oscillation_spin_rms"))
+        .column("left, right, both, none", |row| written(senses(row)))
+        .fixed("correlation [m]", 1, correlation)
+        .fixed("unbalanced", 2, mean("unbalanced_share"))
+        .table()
+}
+
+fn sheet(rows: &[Combination]) -> Sheet {
+    let panels = vec![
+        map_of(
+            rows,
+            "correlation length [m]",
+            ([0.0, 20.0], 4, 0),
+            (correlation, TOGETHER),
+        ),
+        map_of(
+            rows,
+            "frequency where people turn together [rad/s]",
+            ([0.25, 0.55], 6, 2),
+            (frequency, FREQUENCY.y),
+        ),
+        by_size(rows),
+    ];
+    let title = "People on legs in closed squares; top rows and black: filmed (Gu et al. 2025)";
+    Sheet::new(title, 3, [270.0, 210.0], panels)
+}
+
+/// A quantity of the model over density and square, and what was filmed in the row above.
+fn map_of(
+    rows: &[Combination],
+    title: &str,
+    (range, bands, digits): ([f32; 2], u32, usize),
+    (of, filmed): (fn(&Combination) -> Option<Estimate>, f64),
+) -> Panel {
+    let mut densities: Vec<f64> = distinct(rows.iter().filter_map(density));
+    densities.sort_by(f64::total_cmp);
+    let squares = grouped(rows, square);
+    let mut values = Vec::new();
+    for (_, own) in &squares {
+        let at = |wanted: &f64| {
+            let row = own.iter().find(|row| density(row) == Some(*wanted))?;
+            of(row).map(|of| of.value)
+        };
+        values.extend(densities.iter().map(at));
+    }
+    let people = densities.iter().map(|&at| (at >= ONSET).then_some(filmed));
+    values.extend(people);
+    let names = squares.iter().map(|(name, _)| name.clone());
+    let names = names.chain([PEOPLE.to_owned()]);
+    let columns = densities.len();
+    let axes = [
+        Axis::names("density [P/m²]", densities.iter().map(f64::to_string)),
+        Axis::names("", names),
+    ];
+    let map_of = ColorMap::pale(range, bands);
+    let mut panel = map(title, axes, values.clone(), ColorBar::new("", &map_of));
+    for (k, value) in values.into_iter().enumerate() {
+        let more = if k / columns == squares.len() && digits == 0 {
+            "> "
+        } else {
+            ""
+        };
+        let text = value.map_or("–".to_owned(), |value| format!("{more}{value:.digits$}"));
+        panel
+            .marks
+            .push(in_cell([k % columns, k / columns], text, true));
+    }
+    panel
+}
+
+/// The frequency at some densities over the side of the square.
+fn by_size(rows: &[Combination]) -> Panel {
+    let band = [FREQUENCY.y - FREQUENCY.error, FREQUENCY.y + FREQUENCY.error];
+    let mut marks = vec![Mark::rectangle(SIDES, band, BAND)];
+    for (k, at) in CURVES.into_iter().enumerate() {
+        let here = rows.iter().filter(|row| density(row) == Some(at));
+        let (squares, oblong): (Vec<_>, Vec<_>) =
+            here.partition(|row| sides(row).is_some_and(|[width, height]| width == height));
+        let peak = |row: &Combination| value(row, "oscillation_peak_rad_per_s");
+        let of = |rows: Vec<&Combination>| points(rows, |row| side(row), |row| peak(row));
+        let style = |label: &str| Style::full(line_color(k), 1.0, label);
+        marks.extend(curve(of(squares), style(&format!("{at} P/m²")), 2.2));
+        let cross = Style {
+            width: 3.6,
+            ..style("")
+        };
+        marks.push(Mark::Points(of(oblong), cross));
+    }
+    marks.push(Mark::Points(
+        vec![FREQUENCY],
+        Style::full(BLACK, 3.0, PEOPLE),
+    ));
+    let x = Axis::log("√ of the area [m]; large dots: 50 m × 20 m", SIDES)
+        .ticked([8, 12, 18, 25, 36, 50].map(|side| (f64::from(side), side.to_string())));
+    let y = Axis::linear("frequency of the peak [rad/s]", [0.2, 0.7]);
+    Panel::new("all runs", x, y, marks).with_legend(Corner::UpperRight)
+}
+
+/// The correlation length on 50 m × 20 m over density, with the runs, and what was filmed.
+pub(super) fn on_the_oblong(rows: &[Combination]) -> Panel {
+    let oblong = rows
+        .iter()
+        .filter(|row| sides(row).is_some_and(|[width, height]| width != height));
+    let reach = [0.0, 20.0];
+    let densities = [0.0, 9.5];
+    let mut marks = vec![Mark::rectangle(
+        [ONSET, densities[1]],
+        [TOGETHER, reach[1]],
+        BAND,
+    )];
+    let curve = curve(
+        points(oblong, density, correlation),
+        Style::nth(0, 1.0, "legs"),
+        2.2,
+    );
+    marks.extend(curve);
+    let x = Axis::linear("density [P/m²]", densities);
+    let y = Axis::linear("correlation length [m]", reach);
+    let title = "people on legs on 50 m × 20 m; gray: filmed";
+    Panel::new(title, x, y, marks).with_legend(Corner::LowerRight)
+}
