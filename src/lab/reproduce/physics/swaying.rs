@@ -37,7 +37,7 @@ pub const PRODUCT: Product = Product {
     name: "swaying",
     about: "open question: from which density on do people on legs turn together in closed squares, and how fast?",
     in_all: false,
-    studies: &["sway", "sway_large"],
+    studies: &["sway_small", "sway_large", "sway"],
     needs: Needs::All,
     write,
 };
