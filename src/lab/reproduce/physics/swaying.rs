@@ -91,11 +91,11 @@ fn correlation(row: &Combination) -> Option<Estimate> {
 }
 
 /// The frequency of people who turn together: most of the power is at one peak, and the correlation reaches as far as
-/// in the film, or through the whole square (the centers of its boxes of 2 m).
+/// in the film, or through nine tenths of the square (between the centers of its boxes of 2 m).
 fn frequency(row: &Combination) -> Option<Estimate> {
     let longest = sides(row)?.into_iter().fold(0.0, f64::max) - 2.0;
     let has_peak = mean(row, "oscillation_peak_share")?.mean >= LEAST_SHARE;
-    let reaches = correlation(row)?.value >= TOGETHER.min(0.99 * longest);
+    let reaches = correlation(row)?.value >= TOGETHER.min(0.9 * longest);
     value(row, "oscillation_peak_rad_per_s").filter(|_| has_peak && reaches)
 }
 
