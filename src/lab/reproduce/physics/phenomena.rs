@@ -1,7 +1,7 @@
 //! All questions in one picture: people and model side by side.
 
 use super::super::product::{Needs, Product, save};
-use super::{oscillations, queue_pushes, start_waves, swaying};
+use super::{oscillations, queue_pushes, start_waves};
 use crate::lab::error::LabError;
 use crate::lab::gallery::with_legend;
 use crate::lab::sweep::Gathered;
@@ -13,23 +13,22 @@ pub const PRODUCT: Product = Product {
     name: "phenomena",
     about: "the open questions in one picture: people and model side by side",
     in_all: false,
-    studies: &["queue_pushes", "start_waves", "oscillations", "sway"],
+    studies: &["queue_pushes", "start_waves", "oscillations"],
     needs: Needs::All,
     write,
 };
 
 fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
     let rows: Vec<_> = studies.iter().map(Gathered::combinations).collect();
-    let panels = [
+    let fronts = [
         queue_pushes::strongest(&rows[0]),
         start_waves::fronts(&rows[1]),
-        swaying::on_the_oblong(&rows[3]),
     ];
     let spectra = with_legend(oscillations::spectra(&rows[2]), 1);
-    let panels = panels.into_iter().chain(spectra).collect();
+    let panels = fronts.into_iter().chain(spectra).collect();
     let title = "Waves in crowds: what people did (black and gray) and what the model does";
     save(
-        &Sheet::new(title, 2, [250.0, 200.0], panels),
+        &Sheet::new(title, 3, [250.0, 220.0], panels),
         store,
         PRODUCT.name,
     )

@@ -10,7 +10,7 @@ use crate::output::colors::ColorMap;
 use crate::output::plot::{
     Axis, BLACK, ColorBar, Corner, Mark, Panel, Point, Sheet, Style, line_color,
 };
-use crate::output::table::Table;
+use crate::output::table::{Cell, Table};
 use crate::runs::store::Store;
 
 /// What Gu et al. (2025) filmed on 50 m × 20 m: the density from which on people turn, P/m², the angular frequency with
@@ -171,6 +171,12 @@ fn sizes(rows: &[Combination]) -> Table {
         .table()
 }
 
+/// The mean over runs, with its standard error if there are several.
+fn with_error(row: &Combination, what: &str) -> Option<Cell> {
+    let of = mean(row, what)?;
+    Some(Cell::Spread(of.mean, (of.count > 1).then(|| of.error())))
+}
+
 /// All cells of the studies.
 fn cells(rows: &[Combination]) -> Table {
     let mean = |what: &'static str| move |row: &Combination| mean(row, what).map(|of| of.mean);
@@ -182,12 +188,14 @@ fn cells(rows: &[Combination]) -> Table {
             speed(row).map(|of| 1000.0 * of)
         })
         .fixed("peak [rad/s]", 2, |row| {
-            value(row, "oscillation_peak_rad_per_s")
+            with_error(row, "oscillation_peak_rad_per_s")
         })
         .fixed("power at the peak", 2, mean("oscillation_peak_share"))
         .fixed("spin, root mean square", 2, mean("oscillation_spin_rms"))
         .column("left, right, both, none", |row| written(senses(row)))
-        .fixed("correlation [m]", 1, correlation)
+        .fixed("correlation [m]", 1, |row| {
+            with_error(row, "oscillation_correlation_m")
+        })
         .fixed("unbalanced", 2, mean("unbalanced_share"))
         .table()
 }
@@ -280,29 +288,6 @@ fn by_size(rows: &[Combination]) -> Panel {
     let x = Axis::log("√ of the area [m]; large dots: 50 m × 20 m", SIDES)
         .ticked([8, 12, 18, 25, 36, 50].map(|side| (f64::from(side), side.to_string())));
     let y = Axis::linear("frequency of the peak [rad/s]", [0.2, 0.7]);
-    Panel::new("all runs", x, y, marks).with_legend(Corner::UpperRight)
-}
-
-/// The correlation length on 50 m × 20 m over density, with the runs, and what was filmed.
-pub(super) fn on_the_oblong(rows: &[Combination]) -> Panel {
-    let oblong = rows
-        .iter()
-        .filter(|row| sides(row).is_some_and(|[width, height]| width != height));
-    let reach = [0.0, 20.0];
-    let densities = [0.0, 9.5];
-    let mut marks = vec![Mark::rectangle(
-        [ONSET, densities[1]],
-        [TOGETHER, reach[1]],
-        BAND,
-    )];
-    let curve = curve(
-        points(oblong, density, correlation),
-        Style::nth(0, 1.0, "legs"),
-        2.2,
-    );
-    marks.extend(curve);
-    let x = Axis::linear("density [P/m²]", densities);
-    let y = Axis::linear("correlation length [m]", reach);
-    let title = "people on legs on 50 m × 20 m; gray: filmed";
-    Panel::new(title, x, y, marks).with_legend(Corner::LowerRight)
+    Panel::new("frequency over size, held out from the fit", x, y, marks)
+        .with_legend(Corner::UpperRight)
 }
