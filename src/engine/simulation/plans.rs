@@ -310,8 +310,8 @@ impl Crowd {
     }
 }
 
-/// Whether an agent with this plan leaves its room as planned, whatever it expects: there is no other way, and where one
-/// walks behind the other, none to use the width of the opening.
+/// Whether an agent with this plan leaves its room as planned, whatever it expects: there is no other way, and people
+/// pass the opening one behind the other.
 fn has_no_choice(plan: &Plan, rooms: &Rooms) -> bool {
     let only = rooms.only_step(rooms.room(plan.triangle), usize::from(plan.goal));
     let is_narrow = |step: Step| rooms.opening(step).width() < SINGLE_FILE;
