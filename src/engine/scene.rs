@@ -341,8 +341,7 @@ impl Scene {
             .groups
             .iter()
             .flat_map(|group| {
-                let legs = group.blend.legs();
-                let legs = legs.map(|legs| legs.legs_reach.max(legs.lean_limit));
+                let legs = group.blend.legs().map(|legs| legs.range());
                 legs.into_iter().chain([group.blend.sph.support_radius])
             })
             .fold(0.0, f64::max);

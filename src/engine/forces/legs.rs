@@ -168,6 +168,15 @@ impl Legs {
         both
     }
 
+    /// The distance, meters, up to which the law needs agents and walls: without repulsion only the walls between bodies
+    /// and legs.
+    pub fn range(&self) -> f64 {
+        match self.legs_strength {
+            0.0 => self.lean_limit,
+            _ => self.legs_reach.max(self.lean_limit),
+        }
+    }
+
     /// The repulsion by other agents.
     pub fn repulsion(&self) -> Repulsion {
         Repulsion {
