@@ -168,8 +168,8 @@ impl Legs {
         both
     }
 
-    /// The distance, meters, up to which the law needs agents and walls: without repulsion only the walls between bodies
-    /// and legs.
+    /// The distance, meters, up to which the law needs agents and walls: without repulsion only the walls between a
+    /// body and its legs.
     pub fn range(&self) -> f64 {
         match self.legs_strength {
             0.0 => self.lean_limit,
