@@ -150,7 +150,7 @@ impl Floor {
         self.locate(p)
     }
 
-    /// The triangle that contains `p`, looked for near triangle `before` first, or the nearest one to a point in a wall.
+    /// The triangle that contains `p`, looked for near triangle `before` first, or the one nearest to `p` in a wall.
     pub fn locate_or_nearest(&self, before: Option<u32>, p: Vector) -> Option<u32> {
         let here = match before {
             Some(before) => self.locate_from(before, p),
