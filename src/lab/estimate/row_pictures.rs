@@ -60,8 +60,8 @@ impl Answers<'_> {
         )
     }
 
-    /// Total errors of a result, in percent, over the times that all results take with these errors: those of presets if
-    /// the error of their step is known, and for the paper's also if it must be found.
+    /// Total errors of a result, in percent, over the times that all results take with these errors: those of presets
+    /// if the error of their step is known, and for the paper's also if it must be found.
     fn costs_of(&self, k: usize, result: &str) -> Option<Panel> {
         let (_, first) = self.rows.first()?;
         if first.costs.is_empty() {
