@@ -20,9 +20,9 @@ pub enum Detour {
 pub struct Plan {
     /// The triangle of the rooms' floor where the agent was when it was last located.
     pub triangle: u32,
-    /// Where that was, and how far it can move from there without leaving its room, meters.
+    /// Where that was, meters.
     pub located: Vector,
-    /// See [`located`](Self::located).
+    /// The distance from there within which it is still in the same room, meters.
     pub clear: f64,
     /// The number of the path map to its goal.
     pub goal: u16,

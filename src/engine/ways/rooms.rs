@@ -23,9 +23,9 @@ use crate::engine::math::{Vector, direction, perpendicular};
 
 /// Wider passages are no openings, meters: the walk through them takes no waiting that counts.
 pub const WIDEST: f64 = 6.0;
-/// Agents that are farther from all openings of their room count as this far, meters.
+/// Distances to openings are clamped to this, meters: agents farther from them are located again after such a move.
 const CLEAR: f64 = 1.0;
-/// Agents are less deep in walls, meters.
+/// Agents are never deeper in walls than this, meters.
 const IN_WALLS: f64 = 0.5;
 
 /// The rooms of a floor, and the ways in them.

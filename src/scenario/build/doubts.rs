@@ -99,7 +99,7 @@ fn unheeded(keys: &File, scene: &Scene) -> Vec<String> {
     notes
 }
 
-/// A note on people on legs who walk to a goal before the run ends: the law is one of people who stand.
+/// A note if agents with legs walk to a goal before the run ends: the law describes crowds that stand.
 fn on_legs(keys: &File, scene: &Scene) -> Option<String> {
     let end = keys.duration_secs.unwrap_or(f64::INFINITY);
     let walks = |group: &Group, own: Option<f64>, is_sent: bool| {
