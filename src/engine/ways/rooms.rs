@@ -247,7 +247,7 @@ impl Rooms {
         steps.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// A distance, at most [`CLEAR`] meters, that an agent at `p` in triangle `t` can move without leaving its room.
+    /// A distance, at most a meter, that an agent at `p` in triangle `t` can move without leaving its room.
     pub fn clear(&self, t: u32, p: Vector) -> f64 {
         let near = self.near[t as usize].iter();
         let distances = near.map(|&k| self.openings[k as usize].distance(p));
