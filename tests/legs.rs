@@ -195,13 +195,15 @@ fn the_lean_of_a_lone_person_follows_its_closed_form() {
         body - speed * (t - (1.0 - (-recovery * t).exp()) / recovery)
     };
     let off = |dt: f64, at: f64| {
-        let agents = vec![walker(
-            Vector::zeros(),
-            vector(pushed, 0.0),
-            Vector::zeros(),
-        )];
+        let agents = vec![person(Vector::zeros(), Vector::zeros())];
         let mut scene = standing(alone(friction), agents);
         scene.clock = Clock::new(dt, 1);
+        // In the first step the body gets its velocity; the legs are at rest.
+        let acceleration = vector(pushed / dt, 0.0);
+        scene.own_forces.push(Arc::new(Kick {
+            acceleration,
+            until: 0.5 * dt,
+        }));
         let mut simulation = Simulation::new(scene).unwrap();
         run(&mut simulation, (at / dt).round() as u64);
         let lean = simulation.frame().agents.lean(0);
@@ -223,9 +225,13 @@ fn the_lean_of_a_lone_person_follows_its_closed_form() {
     assert!(upright.abs() < 0.05, "{upright} m");
 }
 
-/// Pushes all agents to the side in the first second.
+/// Pushes the bodies of all agents from the start on.
 #[derive(Debug)]
-struct Kick;
+struct Kick {
+    acceleration: Vector,
+    /// Seconds.
+    until: f64,
+}
 
 impl Force for Kick {
     fn name(&self) -> &str {
@@ -241,8 +247,8 @@ impl Force for Kick {
     }
 
     fn acceleration(&self, frame: &Frame, _: usize) -> Vector {
-        match frame.clock.time() < 1.0 {
-            true => vector(0.0, 0.2),
+        match frame.clock.time() < self.until {
+            true => self.acceleration,
             false => Vector::zeros(),
         }
     }
@@ -260,7 +266,10 @@ fn a_lone_person_with_slow_legs_turns_at_the_frequency_of_the_closed_form() {
     let agents = vec![walker(Vector::zeros(), vector(0.3, 0.0), Vector::zeros())];
     let mut scene = standing(parameters, agents);
     scene.clock = Clock::new(0.01, 1);
-    scene.own_forces.push(Arc::new(Kick));
+    scene.own_forces.push(Arc::new(Kick {
+        acceleration: vector(0.0, 0.2),
+        until: 1.0,
+    }));
     let mut simulation = Simulation::new(scene).unwrap();
     run(&mut simulation, 30_000);
     // Body and legs are circles of the frequency ω, in phase with the direction of the lean.
@@ -291,7 +300,7 @@ fn a_lone_person_with_slow_legs_turns_at_the_frequency_of_the_closed_form() {
 
 #[test]
 fn momentum_decays_with_the_friction_of_bodies_and_of_legs() {
-    // Without a speed of balance, only frictions change the momentum; legs begin at rest and repel each other.
+    // Without a speed of balance, only frictions change the momentum; legs begin with their bodies and repel each other.
     let parameters = Parameters {
         balance_speed: Some(0.0),
         unbalancing_rate: Some(0.3),
@@ -317,12 +326,13 @@ fn momentum_decays_with_the_friction_of_bodies_and_of_legs() {
     let [start, _] = momentum(&simulation);
     run(&mut simulation, 50);
     let [bodies, legs] = momentum(&simulation);
-    let expected = start * (1.0 - 0.3 * dt).powi(50);
-    assert!(
-        (bodies - expected).norm() < 1e-10 * start.norm(),
-        "{bodies} instead of {expected}"
-    );
-    assert!(legs.norm() < 1e-10, "{legs}");
+    for (found, rate) in [(bodies, 0.3), (legs, 1.0)] {
+        let expected = start * (1.0 - rate * dt).powi(50);
+        assert!(
+            (found - expected).norm() < 1e-10 * start.norm(),
+            "{found} instead of {expected}"
+        );
+    }
     let moved = simulation
         .frame()
         .agents
@@ -333,21 +343,36 @@ fn momentum_decays_with_the_friction_of_bodies_and_of_legs() {
 }
 
 #[test]
-fn a_lone_person_walks_upright() {
-    // Legs that run faster than bodies fall: such people do not sway.
-    let parameters = Parameters {
-        balancing_rate: Some(2.0),
-        ..alone(2.0)
+fn a_lone_person_walks_upright_if_its_legs_are_fast_and_sways_if_they_are_slow() {
+    // λᵤ (λᵤ + λ) = 1.25 1/s²: with λ_b² above that people do not sway, whether they stand or walk.
+    let walked = |balancing_rate: f64| {
+        let parameters = Parameters {
+            balancing_rate: Some(balancing_rate),
+            ..alone(2.0)
+        };
+        let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
+        let mut walker = person(Vector::zeros(), vector(500.0, 0.0));
+        walker.velocity = vector(1.3, 0.01);
+        scene.agents = vec![walker];
+        let mut simulation = Simulation::new(scene).unwrap();
+        run(&mut simulation, 1500);
+        let agents = simulation.frame().agents;
+        (agents.velocity[0], agents.lean(0).norm())
     };
-    let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
-    scene.agents = vec![person(Vector::zeros(), vector(500.0, 0.0))];
-    let mut simulation = Simulation::new(scene).unwrap();
-    run(&mut simulation, 1500);
+    let (velocity, lean) = walked(2.0);
+    assert!((velocity.x - 1.4).abs() < 0.05, "{velocity}");
+    assert!(lean < 0.1, "{lean}");
+    let (_, lean) = walked(0.3);
+    assert!(lean > 0.3, "{lean}");
+}
+
+#[test]
+fn people_enter_upright_with_legs_as_fast_as_their_bodies() {
+    let mut crowd = standing(alone(1.0), vec![person(Vector::zeros(), Vector::zeros())]);
+    crowd.agents[0].velocity = vector(0.8, -0.6);
+    let mut simulation = Simulation::new(crowd).unwrap();
+    simulation.evaluate();
     let agents = simulation.frame().agents;
-    assert!(
-        (agents.velocity[0].x - 1.4).abs() < 0.05,
-        "{}",
-        agents.velocity[0]
-    );
-    assert!(agents.lean(0).norm() < 0.1, "{}", agents.lean(0));
+    assert_eq!(agents.legs_velocity[0], vector(0.8, -0.6));
+    assert_eq!(agents.lean(0), Vector::zeros());
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{E, TAU};
 
-use sandbox::analysis::oscillation::{Oscillation, Spectrum, correlation_length};
+use sandbox::analysis::oscillation::{Oscillation, Spectrum, correlation_lengths};
 use serde_json::json;
 
 use crate::common::simulated::{measured, scenario};
@@ -39,7 +39,7 @@ fn series(omega: f64, along: f64, phase: f64, noise: f64) -> Vec<[f64; 2]> {
 fn the_frequency_of_a_sine_in_noise_is_found() {
     for omega in [0.2, 0.35, 0.51, 1.3] {
         let boxes: Vec<_> = (0..60)
-            .map(|k| series(omega, 0.0, f64::from(k), 0.15))
+            .map(|k| Some(series(omega, 0.0, f64::from(k), 0.15)))
             .collect();
         let found = Oscillation::of(&boxes, EVERY).unwrap();
         let off = found.peak.unwrap() - omega;
@@ -50,21 +50,30 @@ fn the_frequency_of_a_sine_in_noise_is_found() {
         // The sine has the power 0.005 m²/s², the noise 2 · 0.0075 m²/s².
         let share = found.peak_share().unwrap();
         assert!((share - 0.005 / 0.02).abs() < 0.03, "{omega}: {share}");
-        let mean = found.spins.iter().sum::<f64>() / found.spins.len() as f64;
+        let spins = found.spins.iter().map(|spin| spin.unwrap());
+        let mean = spins.sum::<f64>() / found.spins.len() as f64;
         assert!(mean.abs() < 0.1, "a line has no spin: {mean}");
     }
 }
 
 #[test]
 fn the_spin_of_circles_is_their_sense() {
-    let senses = [1.0, -1.0, 1.0, 1.0, -1.0, -1.0];
-    let boxes: Vec<_> = senses
+    let senses = [1.0, -1.0, 1.0, 1.0, -1.0, -1.0].map(Some);
+    // A box that was empty at some time keeps its place among the others.
+    let senses: Vec<Option<f64>> = senses.into_iter().chain([None, Some(1.0)]).collect();
+    let boxes = senses
         .iter()
-        .map(|&sense| series(0.35, sense, 0.4, 0.0))
-        .collect();
+        .map(|sense| Some(series(0.35, (*sense)?, 0.4, 0.0)));
+    let boxes: Vec<_> = boxes.collect();
     let found = Oscillation::of(&boxes, EVERY).unwrap();
+    assert_eq!(found.spins.len(), senses.len());
     for (sense, spin) in senses.iter().zip(&found.spins) {
-        assert!((sense - spin).abs() < 1e-3, "{sense}: {spin}");
+        let off = sense.zip(*spin).map(|(sense, spin)| sense - spin);
+        assert!(
+            off.is_none_or(|off| off.abs() < 1e-3),
+            "{sense:?}: {spin:?}"
+        );
+        assert_eq!(sense.is_some(), spin.is_some());
     }
     // The rest is the mean of an incomplete circle, which is removed.
     assert!(found.peak_share().unwrap() > 0.99);
@@ -105,6 +114,27 @@ fn short_and_constant_series_have_no_peak() {
     assert_eq!(Oscillation::of(&[], EVERY), None);
     let still = Spectrum::of(&[[1.0, 2.0]; 100], EVERY).unwrap();
     assert!(still.power() < 1e-25);
+}
+
+#[test]
+fn spectra_that_are_flat_or_fall_have_no_peak() {
+    // A crowd that comes to rest, and a circle with one turn: the power falls from two resolutions on.
+    let decay = |n: usize| (-0.1 * EVERY * n as f64).exp();
+    let rest: Vec<[f64; 2]> = (0..COUNT).map(|n| [decay(n), 0.5 * decay(n)]).collect();
+    assert_eq!(Spectrum::of(&rest, EVERY).unwrap().peak(), None);
+    let noise = |seed: usize| {
+        let mut state = seed as u64;
+        let noise = (0..COUNT).map(|_| [random(&mut state), random(&mut state)]);
+        Some(noise.collect())
+    };
+    let noise: Vec<_> = (1..500).map(noise).collect();
+    assert_eq!(Oscillation::of(&noise, EVERY).unwrap().peak, None);
+    let secs = COUNT as f64 * EVERY;
+    let slow =
+        |turns: f64| Spectrum::of(&series(turns * TAU / secs, 1.0, 0.3, 0.0), EVERY).unwrap();
+    assert_eq!(slow(1.0).peak(), None);
+    let found = slow(3.4).peak().unwrap() * secs / TAU;
+    assert!((found - 3.4).abs() < 0.1, "{found} turns");
 }
 
 #[test]
@@ -160,19 +190,66 @@ fn the_correlation_length_of_known_fields_is_found() {
             .map(|k| Some(turning(wave * f64::from(k % 20))))
             .collect()
     };
-    let length = |field: &[_]| correlation_length(field, 20, [2.0, 2.0]).unwrap();
-    // All together: as long as the longest row; an empty box changes nothing.
-    assert_eq!(length(&field(0.0)), 38.0);
+    let lengths = |field: &[_]| correlation_lengths(field, 20, [2.0, 3.0]);
+    let close = |found: [Option<f64>; 2], expected: [f64; 2]| {
+        let off = [0, 1].map(|k| found[k].unwrap() - expected[k]);
+        assert!(
+            off.iter().all(|off| off.abs() < 0.1),
+            "{found:?} instead of {expected:?}"
+        );
+    };
+    // All together: as long as rows and columns; an empty box changes nothing.
+    close(lengths(&field(0.0)), [38.0, 6.0]);
     let mut holed = field(0.0);
     holed[7] = None;
-    assert!((length(&holed) - 38.0).abs() < 1e-9);
-    // A wave: the correlation at a distance d is cos(q d), with q per box. Columns all move alike.
-    let single: Vec<_> = field(0.25).into_iter().take(20).collect();
-    let expected = 2.0 * (1.0 / E).acos() / 0.25;
-    let found = length(&single);
+    close(lengths(&holed), [38.0, 6.0]);
+    // A wave along x: the correlation at a distance d is cos(q d), with q per box.
+    let quarter = 2.0 * (1.0 / E).acos() / 0.25;
+    close(lengths(&field(0.25)), [quarter, 6.0]);
+    // One row has no distances along y, one box none at all.
+    let row: Vec<_> = field(0.25).into_iter().take(20).collect();
+    let [along, across] = lengths(&row);
+    assert!((along.unwrap() - quarter).abs() < 0.1 && across.is_none());
+    assert_eq!(correlation_lengths(&row[..1], 1, [2.0, 2.0]), [None, None]);
+    assert_eq!(correlation_lengths(&[], 1, [2.0, 2.0]), [None, None]);
+    // Where people move as one, boxes without people say nothing: neither between two others nor around them.
+    let gap = [Some(turning(0.0)), None, Some(turning(0.0))];
+    assert_eq!(correlation_lengths(&gap, 3, [2.0, 2.0]), [Some(4.0), None]);
+    let corner = (0..100).map(|k| (k % 10 < 5 && k / 10 < 5).then(|| turning(0.0)));
+    let corner: Vec<_> = corner.collect();
+    assert_eq!(correlation_lengths(&corner, 10, [2.0, 2.0]), [Some(8.0); 2]);
+}
+
+#[test]
+fn spectra_of_times_too_short_for_their_band_get_a_note() {
+    let over = |from: f64, until: Option<f64>, low: f64| {
+        let mut oscillation =
+            json!({"region": [[0, 0], [12, 10]], "from_secs": from, "band": [low, 1.0]});
+        if let Some(until) = until {
+            oscillation["until_secs"] = json!(until);
+        }
+        let document = json!({
+            "duration_secs": 120, "agents": [{"position": [5, 5], "goal": [5, 5]}],
+            "measurements": [{"oscillation": oscillation}],
+        });
+        scenario(&document, &[]).unwrap().notes
+    };
+    // Two turns of 0.3 rad/s take 42 s.
+    assert_eq!(over(78.0, None, 0.3), [""; 0]);
+    assert_eq!(over(20.0, Some(62.0), 0.3), [""; 0]);
+    for short in [
+        over(79.0, None, 0.3),
+        over(20.0, Some(61.0), 0.3),
+        over(0.0, None, 0.1),
+    ] {
+        let said = &short[0];
+        assert!(
+            said.starts_with("measurements[0].oscillation: in "),
+            "{said}"
+        );
+    }
     assert!(
-        (found - expected).abs() < 0.1,
-        "{found} instead of {expected}"
+        over(79.0, None, 0.3)[0]
+            .contains("from 0.31 rad/s on, and `band` begins at 0.3: measure for at least 42 s")
     );
-    assert_eq!(correlation_length(&[], 1, [2.0, 2.0]), None);
 }

@@ -67,8 +67,8 @@ fn powers(series: &[Velocity], frequency: f64) -> [f64; 2] {
     })
 }
 
-/// The distance at which the correlation of boxes falls below 1/e, along rows or along columns.
-fn correlated(boxes: &[Vec<Velocity>]) -> f64 {
+/// The distances at which the correlation of boxes falls below 1/e, along rows and along columns.
+fn correlated(boxes: &[Vec<Velocity>]) -> [f64; 2] {
     let [columns, rows] = BOXES;
     let product = |a: usize, b: usize| -> f64 {
         let pairs = boxes[a].iter().zip(&boxes[b]);
@@ -94,7 +94,7 @@ fn correlated(boxes: &[Vec<Velocity>]) -> f64 {
         }
         2.0 * longest as f64
     };
-    along(1, 0).max(along(0, 1))
+    [along(1, 0), along(0, 1)]
 }
 
 #[test]
@@ -160,6 +160,13 @@ fn frequency_sense_and_correlation_are_those_of_the_trajectories() {
     let off = rms - metric("spin_rms");
     assert!(rms > 0.3 && off.abs() < 0.02, "of {rms}, {off} is missing");
 
-    let off = correlated(&boxes) - metric("correlation_m");
-    assert!(off.abs() < 1e-9, "the correlation length is off by {off} m");
+    let [x, y] = correlated(&boxes);
+    for (length, of) in [(x, "x_"), (y, "y_"), (x.max(y), "")] {
+        let off = length - metric(&format!("correlation_{of}m"));
+        assert!(
+            off.abs() < 1e-9,
+            "the correlation length {of} is off by {off} m"
+        );
+    }
+    assert_eq!(metric("boxes"), boxes.len() as f64);
 }

@@ -16,6 +16,9 @@ const FEWEST_SAMPLES: usize = 16;
 /// Half the width of the main lobe of a Hann window, in resolutions. It contains the power of a pure oscillation.
 const LOBE: f64 = 2.0;
 
+/// The density at a peak is at least this times that where the search begins.
+const PROMINENCE: f64 = 2.0;
+
 /// A velocity, m/s, or its Fourier transform: real and imaginary part.
 type Complex = [f64; 2];
 
@@ -70,11 +73,11 @@ impl Spectrum {
     }
 
     /// The mean of spectra with the same frequencies; `None` without spectra.
-    fn mean(spectra: &[Self]) -> Option<Self> {
-        let (first, others) = spectra.split_first()?;
-        let mut mean = first.clone();
-        let count = spectra.len() as f64;
-        for other in others {
+    fn mean<'a>(mut spectra: impl Iterator<Item = &'a Self>) -> Option<Self> {
+        let mut mean = spectra.next()?.clone();
+        let mut count = 1.0;
+        for other in spectra {
+            count += 1.0;
             let sums = mean.counterclockwise.iter_mut().chain(&mut mean.clockwise);
             let powers = other.counterclockwise.iter().chain(&other.clockwise);
             sums.zip(powers).for_each(|(sum, power)| *sum += power);
@@ -120,15 +123,19 @@ impl Spectrum {
     }
 
     /// The frequency with the most power, rad/s, above the trend, that is, from two resolutions on. `None` without
-    /// power.
+    /// power, and unless its density is twice that where the search begins: flat spectra and those that fall from there
+    /// on, as of a crowd that comes to rest, have no peak.
     pub fn peak(&self) -> Option<f64> {
         let densities: Vec<[f64; 2]> = self.densities().collect();
         let lowest = LOBE * self.resolution;
-        let inside = (1..densities.len().saturating_sub(1)).filter(|&k| densities[k][0] >= lowest);
+        let mut inside =
+            (1..densities.len().saturating_sub(1)).filter(|&k| densities[k][0] >= lowest);
+        let start = inside.next()?;
         let top = inside.max_by(|&a, &b| densities[a][1].total_cmp(&densities[b][1]))?;
         let around = [top - 1, top, top + 1].map(|k| densities[k][1]);
         let shift = vertex(around).clamp(-0.5, 0.5);
-        (around[1] > 0.0).then_some((top as f64 + shift) * self.step)
+        let stands_out = around[1] > PROMINENCE * densities[start][1];
+        stands_out.then_some((top as f64 + shift) * self.step)
     }
 
     /// The band that holds the power of a pure oscillation with this frequency, rad/s.
@@ -140,24 +147,24 @@ impl Spectrum {
 /// The oscillations of the mean velocities in boxes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Oscillation {
-    /// The mean spectrum over all boxes.
+    /// The mean spectrum over all boxes that were never empty.
     pub spectrum: Spectrum,
     /// Its peak, rad/s.
     pub peak: Option<f64>,
-    /// The spin of each box around this peak.
-    pub spins: Vec<f64>,
+    /// The spin of each box around this peak; `None` where it was empty at some time, or does not move.
+    pub spins: Vec<Option<f64>>,
 }
 
 impl Oscillation {
-    /// Averages the spectra of all boxes. `every` is the time between two values, seconds. `None` without boxes or for
-    /// fewer than 16 values.
-    pub fn of(boxes: &[Vec<[f64; 2]>], every: f64) -> Option<Self> {
-        let spectra = boxes.iter().map(|series| Spectrum::of(series, every));
-        let spectra: Vec<Spectrum> = spectra.collect::<Option<_>>()?;
-        let spectrum = Spectrum::mean(&spectra)?;
+    /// Averages the spectra of all boxes; a box that was empty at some time is `None`. `every` is the time between two
+    /// values, seconds. `None` without boxes or for fewer than 16 values.
+    pub fn of(boxes: &[Option<Vec<[f64; 2]>>], every: f64) -> Option<Self> {
+        let spectrum = |series: &Option<Vec<_>>| Spectrum::of(series.as_ref()?, every);
+        let spectra: Vec<Option<Spectrum>> = boxes.iter().map(spectrum).collect();
+        let spectrum = Spectrum::mean(spectra.iter().flatten())?;
         let peak = spectrum.peak();
         let band = peak.map(|peak| spectrum.around(peak));
-        let spins = spectra.iter().filter_map(|of| of.spin(band?));
+        let spins = spectra.iter().map(|of| of.as_ref()?.spin(band?));
         Some(Self {
             spins: spins.collect(),
             peak,
@@ -171,16 +178,17 @@ impl Oscillation {
     }
 }
 
-/// How far apart boxes move together, meters: the distance along a row or column of boxes from which on the correlation
-/// of velocities, minus their means over time, is below 1/e; between two distances it is linear. If it never is, the
-/// length of the longest row. `boxes` go row by row, `None` where one was empty at some time; `sides` of a box, meters.
-/// `None` without motion.
-pub fn correlation_length(
+/// How far apart boxes move together along x and along y, meters: the distance along a row or column of boxes from
+/// which on the correlation of velocities, minus their means over time, is below 1/e; between two distances it is
+/// linear. If it never is, the largest distance between two boxes of a row or column. `boxes` go row by row, `None`
+/// where one was empty at some time; `sides` of a box, meters. `None` without motion, and where no two boxes are in one
+/// row or column.
+pub fn correlation_lengths(
     boxes: &[Option<Vec<[f64; 2]>>],
     columns: usize,
     sides: [f64; 2],
-) -> Option<f64> {
-    let rows = boxes.len().checked_div(columns)?;
+) -> [Option<f64>; 2] {
+    let rows = boxes.len().checked_div(columns).unwrap_or(0);
     let still: Vec<_> = boxes
         .iter()
         .map(|of| of.as_deref().map(without_mean))
@@ -194,30 +202,34 @@ pub fn correlation_length(
                 .sum(),
         )
     };
-    let mean = |products: Vec<f64>| products.iter().sum::<f64>() / products.len().max(1) as f64;
+    let mean = |products: Vec<f64>| {
+        let count = products.len() as f64;
+        (count > 0.0).then(|| products.iter().sum::<f64>() / count)
+    };
     let power = mean((0..boxes.len()).filter_map(|k| product(k, k)).collect());
-    let along = |step: usize, place: fn(usize, usize) -> usize, count: usize| -> Vec<f64> {
+    let power = power.filter(|&power| power > 0.0);
+    let along = |step: usize, place: fn(usize, usize) -> usize, count: usize| {
+        let power = power?;
         let at = |distance: usize| {
             let inside = (0..boxes.len()).filter(|&k| place(k, columns) + distance < count);
-            mean(
-                inside
-                    .filter_map(|k| product(k, k + step * distance))
-                    .collect(),
-            ) / power
+            let products = inside.filter_map(|k| product(k, k + step * distance));
+            Some((distance as f64, mean(products.collect())? / power))
         };
-        (0..count).map(at).collect()
+        // Distances at which no two boxes have people are skipped.
+        let correlations: Vec<(f64, f64)> = (0..count).filter_map(at).collect();
+        let below = correlations.iter().position(|&(_, part)| part < 1.0 / E);
+        match (below, correlations.last()) {
+            (Some(k), _) => {
+                let ((near, before), (far, after)) = (correlations[k - 1], correlations[k]);
+                Some(near + (far - near) * (before - 1.0 / E) / (before - after))
+            }
+            (None, Some(&(longest, _))) => (longest > 0.0).then_some(longest),
+            (None, None) => None,
+        }
     };
     let x = along(1, |k, columns| k % columns, columns);
     let y = along(columns, |k, columns| k / columns, rows);
-    let lengths = [(x, sides[0]), (y, sides[1])].map(|(correlations, side)| {
-        let below = correlations.iter().position(|&part| part < 1.0 / E);
-        let last = correlations.len().saturating_sub(1) as f64;
-        side * below.map_or(last, |k| {
-            let (before, after) = (correlations[k - 1], correlations[k]);
-            k as f64 - (1.0 / E - after) / (before - after)
-        })
-    });
-    (power > 0.0).then(|| lengths[0].max(lengths[1]))
+    [x.map(|x| x * sides[0]), y.map(|y| y * sides[1])]
 }
 
 fn without_mean(series: &[[f64; 2]]) -> Vec<[f64; 2]> {

@@ -181,9 +181,11 @@ impl Profile {
         }
         if let Some(legs) = self.legs {
             terms.balance = Some(legs.balance(frame, i).body);
-            let near = frame.neighbors.near_walls(i);
-            terms.body_agents = Some(near::repulsion_of(frame, i).body);
-            terms.body_walls = Some(legs.from_walls(frame, i, near).body);
+            if self.wanted().legs {
+                let near = frame.neighbors.near_walls(i);
+                terms.body_agents = Some(near::repulsion_of(frame, i).body);
+                terms.body_walls = Some(legs.from_walls(frame, i, near).body);
+            }
         }
         terms
     }

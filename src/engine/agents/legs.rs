@@ -4,11 +4,11 @@ use super::Agents;
 use crate::engine::math::Vector;
 
 impl Agents {
-    /// Puts legs at rest under the bodies of agents that have none yet.
+    /// Puts legs under the bodies of agents that have none yet, with the velocity of the body: agents enter upright.
     pub fn stand(&mut self) {
         let lack = self.legs.len()..self.len();
-        self.legs_velocity.resize(self.len(), Vector::zeros());
-        self.legs.extend_from_slice(&self.position[lack]);
+        self.legs.extend_from_slice(&self.position[lack.clone()]);
+        self.legs_velocity.extend_from_slice(&self.velocity[lack]);
     }
 
     /// ℓ_i, from the legs to the body, meters; zero without legs.

@@ -24,6 +24,7 @@ pub const PRODUCTS: &[Product] = &[
     questions::PRODUCT,
     physics::OSCILLATIONS,
     physics::SWAYING,
+    physics::SWAYING_RATES,
     physics::START_WAVES,
     physics::QUEUE_PUSHES,
     physics::PHENOMENA,

@@ -1,6 +1,7 @@
 //! Notes on scenarios that are valid but doubtful: units, speeds, journeys without end, no agents.
 
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 
 use crate::engine::entrance::Entrance;
 use crate::engine::geometry::Walls;
@@ -25,6 +26,8 @@ const AT_EXIT: f64 = 0.1;
 /// Crowds do not run faster, m/s.
 const FAST: f64 = 4.0;
 
+/// Groups of which this share walks are walking groups.
+const SOME: f64 = 0.05;
 /// From this number of agents on, a note says how they choose their ways.
 const CROWD: u64 = 100;
 
@@ -41,6 +44,7 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
         .chain(endless(scene))
         .chain(coincident(scene))
         .chain(peaks(keys))
+        .chain(spectra(keys))
         .chain(at_exits(scene))
         .chain(unused(scene))
         .chain(closed(keys, scene))
@@ -103,7 +107,7 @@ fn unheeded(keys: &File, scene: &Scene) -> Vec<String> {
 fn on_legs(keys: &File, scene: &Scene) -> Option<String> {
     let end = keys.duration_secs.unwrap_or(f64::INFINITY);
     let walks = |group: &Group, own: Option<f64>, is_sent: bool| {
-        let waits = own.or_else(|| Some(group.traits.premovement.as_ref()?.mean()));
+        let waits = own.or_else(|| Some(group.traits.premovement.as_ref()?.quantile(SOME)));
         group.blend.legs().is_some() && is_sent && waits.unwrap_or(0.0) < end
     };
     let is_sent = |group: &Group| {
@@ -208,6 +212,26 @@ fn peaks(keys: &File) -> Vec<String> {
         ))
     };
     measured.filter_map(note).collect()
+}
+
+/// Notes on spectra of times too short for the frequencies that they are to show.
+fn spectra(keys: &File) -> Vec<String> {
+    let note = |(k, given): (usize, &Measurement)| {
+        let (samples, wanted) = given.about().spectrum?;
+        let ends = [samples.until_secs, keys.duration_secs];
+        let end = ends.into_iter().flatten().reduce(f64::min)?;
+        let secs = end - samples.from_secs;
+        let lowest = 2.0 * TAU / secs;
+        (secs > 0.0 && lowest > wanted).then(|| {
+            format!(
+                "measurements[{k}].oscillation: in {secs} s peaks are found from {lowest:.2} rad/s on, and `band` begins \
+                 at {wanted}: measure for at least {:.0} s",
+                (2.0 * TAU / wanted).ceil()
+            )
+        })
+    };
+    let given = keys.measurements.iter().enumerate();
+    given.filter_map(note).collect()
 }
 
 /// Notes on entrances whose agents walk to an exit on whose line they enter.

@@ -128,6 +128,8 @@ pub struct About {
     pub journey: Option<(&'static str, String)>,
     /// Its key, if it reports the largest forces from the start of the run on.
     pub peaks_from_start: Option<&'static str>,
+    /// When it samples, and the lowest frequency that it is to show, rad/s, if it measures a spectrum.
+    pub spectrum: Option<(window::Samples, f64)>,
     /// The mass of an average person, kg, if it measures forces on walls.
     pub mass_on_walls: Option<f64>,
     /// Whether it compares with thresholds of the literature.

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::window::{Samples, Window};
-use super::{Measure, Observed, Quantity};
-use crate::analysis::oscillation::{Oscillation as Found, correlation_length};
+use super::{About, Measure, Observed, Quantity};
+use crate::analysis::oscillation::{Oscillation as Found, correlation_lengths};
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -109,17 +109,13 @@ impl Oscillation {
         (0..boxes).map(series).collect()
     }
 
-    fn found(&self, seen: &Seen) -> Option<Found> {
-        let series: Vec<_> = self.series(seen).into_iter().flatten().collect();
-        Found::of(&series, seen.every)
-    }
-
-    fn correlation_length(&self, seen: &Seen) -> Option<f64> {
+    /// The distances over which boxes move together along x and along y, meters.
+    fn correlation_lengths(&self, series: &[Option<Vec<[f64; 2]>>]) -> [Option<f64>; 2] {
         let region: Region = self.region.into();
         let [columns, rows] = self.boxes(&region);
         let size = region.max - region.min;
         let sides = [size.x / columns as f64, size.y / rows as f64];
-        correlation_length(&self.series(seen), columns, sides)
+        correlation_lengths(series, columns, sides)
     }
 }
 
@@ -128,6 +124,13 @@ impl Measure for Oscillation {
 
     fn places(&self) -> Vec<(&'static str, Observed)> {
         Observed::region("oscillation.region", Some(self.region))
+    }
+
+    fn about(&self) -> About {
+        About {
+            spectrum: Some((self.window().samples, self.band[0])),
+            ..About::default()
+        }
     }
 
     fn check(&self) -> Result<(), Problem> {
@@ -180,7 +183,14 @@ impl Measure for Oscillation {
             (
                 "correlation_m",
                 "m",
-                "distance at which the correlation of the boxes' velocities falls below 1/e",
+                "distance at which the correlation of the boxes' velocities falls below 1/e, the longer of x and y",
+            ),
+            ("correlation_x_m", "m", "the same along x"),
+            ("correlation_y_m", "m", "the same along y"),
+            (
+                "boxes",
+                "",
+                "boxes that were never empty: all others are left out",
             ),
         ];
         Quantity::all(self.name(), &values)
@@ -214,14 +224,16 @@ impl Measure for Oscillation {
     }
 
     fn values(&self, seen: &Seen, _: &Simulation) -> Vec<Option<f64>> {
-        let Some(found) = self.found(seen) else {
+        let series = self.series(seen);
+        let Some(found) = Found::of(&series, seen.every) else {
             return vec![None; self.quantities().len()];
         };
-        let count = found.spins.len() as f64;
+        let spins: Vec<f64> = found.spins.iter().copied().flatten().collect();
         let mean = |of: fn(&f64) -> f64| {
-            let sum: f64 = found.spins.iter().map(of).sum();
-            (count > 0.0).then(|| sum / count)
+            let sum: f64 = spins.iter().map(of).sum();
+            (!spins.is_empty()).then(|| sum / spins.len() as f64)
         };
+        let [x, y] = self.correlation_lengths(&series);
         vec![
             found.peak,
             found.peak_share(),
@@ -229,11 +241,15 @@ impl Measure for Oscillation {
             Some(found.spectrum.power().sqrt()),
             mean(|spin| *spin),
             mean(|spin| spin * spin).map(f64::sqrt),
-            self.correlation_length(seen),
+            [x, y].into_iter().flatten().reduce(f64::max),
+            x,
+            y,
+            Some(series.iter().flatten().count() as f64),
         ]
     }
 
     fn data(&self, seen: &Seen) -> Option<(String, Value)> {
-        Some((self.name().to_owned(), json!(self.found(seen))))
+        let found = Found::of(&self.series(seen), seen.every);
+        Some((self.name().to_owned(), json!(found)))
     }
 }

@@ -15,7 +15,7 @@ pub use oscillations::PRODUCT as OSCILLATIONS;
 pub use phenomena::PRODUCT as PHENOMENA;
 pub use queue_pushes::PRODUCT as QUEUE_PUSHES;
 pub use start_waves::PRODUCT as START_WAVES;
-pub use swaying::PRODUCT as SWAYING;
+pub use swaying::{PRODUCT as SWAYING, RATES as SWAYING_RATES};
 
 use super::product::save;
 use crate::analysis::statistics::{Estimate, MeanStd};

@@ -1,7 +1,7 @@
 //! All questions in one picture: people and model side by side.
 
 use super::super::product::{Needs, Product, save};
-use super::{oscillations, queue_pushes, start_waves};
+use super::{oscillations, queue_pushes, start_waves, swaying};
 use crate::lab::error::LabError;
 use crate::lab::gallery::with_legend;
 use crate::lab::sweep::Gathered;
@@ -13,7 +13,7 @@ pub const PRODUCT: Product = Product {
     name: "phenomena",
     about: "the open questions in one picture: people and model side by side",
     in_all: false,
-    studies: &["queue_pushes", "start_waves", "oscillations"],
+    studies: &["queue_pushes", "start_waves", "oscillations", "sway"],
     needs: Needs::All,
     write,
 };
@@ -25,10 +25,11 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
         start_waves::fronts(&rows[1]),
     ];
     let spectra = with_legend(oscillations::spectra(&rows[2]), 1);
-    let panels = fronts.into_iter().chain(spectra).collect();
+    let legs = swaying::frequencies(&rows[3]);
+    let panels = fronts.into_iter().chain(spectra).chain([legs]).collect();
     let title = "Waves in crowds: what people did (black and gray) and what the model does";
     save(
-        &Sheet::new(title, 3, [250.0, 220.0], panels),
+        &Sheet::new(title, 2, [290.0, 220.0], panels),
         store,
         PRODUCT.name,
     )

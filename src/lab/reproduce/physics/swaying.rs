@@ -19,7 +19,7 @@ const ONSET: f64 = 4.0;
 const FREQUENCY: Point = Point {
     x: 31.6,
     y: 0.35,
-    error: 0.1,
+    error: 0.05,
 };
 const TOGETHER: f64 = 10.0;
 const PEOPLE: &str = "people, 50 m × 20 m";
@@ -29,6 +29,8 @@ const LEAST_SHARE: f64 = 0.5;
 const SPINS: [f64; 2] = [0.2, 0.5];
 /// The ends of the axis of sizes, meters.
 const SIDES: [f64; 2] = [7.0, 60.0];
+/// The ends of the axis of densities, P/m².
+const DENSITIES: [f64; 2] = [0.0, 10.0];
 /// The densities with a curve over sizes, P/m².
 const CURVES: [f64; 3] = [5.0, 6.0, 7.0];
 
@@ -41,6 +43,22 @@ pub const PRODUCT: Product = Product {
     needs: Needs::All,
     write,
 };
+
+/// The table of other parameters, and of people on legs with fluid forces.
+pub const RATES: Product = Product {
+    name: "swaying-rates",
+    about: "open question: do people on legs turn together with other parameters, and over fluid forces?",
+    in_all: false,
+    studies: &["sway_rates"],
+    needs: Needs::All,
+    write: write_rates,
+};
+
+fn write_rates(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
+    let study = &studies[0];
+    study.write(store, None)?;
+    Ok(cells(&study.combinations()).markdown())
+}
 
 fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
     let rows: Vec<Combination> = studies.iter().flat_map(Gathered::combinations).collect();
@@ -96,19 +114,20 @@ fn frequency(row: &Combination) -> Option<Estimate> {
     let longest = sides(row)?.into_iter().fold(0.0, f64::max) - 2.0;
     let has_peak = mean(row, "oscillation_peak_share")?.mean >= LEAST_SHARE;
     let reaches = correlation(row)?.value >= TOGETHER.min(0.9 * longest);
-    value(row, "oscillation_peak_rad_per_s").filter(|_| has_peak && reaches)
+    peak(row).filter(|_| has_peak && reaches)
 }
 
 /// How many runs turn to the left, to the right, in both senses at once, and in none.
 fn senses(row: &Combination) -> [usize; 4] {
     let [one, both] = SPINS;
-    let all = values(row, "oscillation_spin_rms");
+    let [means, squares] =
+        ["spin", "spin_rms"].map(|what| row.values(&format!("oscillation_{what}")));
     let mut counts = [0; 4];
-    for (spin, all) in values(row, "oscillation_spin").into_iter().zip(all) {
-        let sense = match spin {
-            _ if spin >= one => 0,
-            _ if spin <= -one => 1,
-            _ if all >= both => 2,
+    for (mean, square) in means.into_iter().zip(squares) {
+        let sense = match (mean, square) {
+            (Some(mean), _) if mean >= one => 0,
+            (Some(mean), _) if mean <= -one => 1,
+            (_, Some(square)) if square >= both => 2,
             _ => 3,
         };
         counts[sense] += 1;
@@ -122,7 +141,7 @@ fn written(counts: [usize; 4]) -> String {
 
 /// What was filmed, and for each square the densities at which its people turn together.
 fn sizes(rows: &[Combination]) -> Table {
-    let filmed = [PEOPLE, "4 ± 1", "0.35 ± 0.1", "> 10", "both"].map(str::to_owned);
+    let filmed = [PEOPLE, "4.0 ± 0.5", "0.35 ± 0.05", "> 10", "both"].map(str::to_owned);
     let of_square = |(name, rows): (String, Vec<&Combination>)| {
         let together: Vec<_> = rows.iter().filter(|row| frequency(row).is_some()).collect();
         let densities: Vec<String> = together
@@ -182,7 +201,7 @@ fn cells(rows: &[Combination]) -> Table {
     let mean = |what: &'static str| move |row: &Combination| mean(row, what).map(|of| of.mean);
     let speed = mean("oscillation_speed_m_per_s");
     Table::of(rows)
-        .column("square, density", |row| row.label().to_owned())
+        .column("crowd", |row| row.label().to_owned())
         .column("runs", |row| row.results.len())
         .fixed("velocity [mm/s]", 0, move |row| {
             speed(row).map(|of| 1000.0 * of)
@@ -196,6 +215,8 @@ fn cells(rows: &[Combination]) -> Table {
         .fixed("correlation [m]", 1, |row| {
             with_error(row, "oscillation_correlation_m")
         })
+        .fixed("along x", 1, mean("oscillation_correlation_x_m"))
+        .fixed("along y", 1, mean("oscillation_correlation_y_m"))
         .fixed("unbalanced", 2, mean("unbalanced_share"))
         .table()
 }
@@ -263,15 +284,48 @@ fn map_of(
     panel
 }
 
+/// The frequencies of a peak that agree with the film, rad/s.
+fn filmed() -> [f64; 2] {
+    [-FREQUENCY.error, FREQUENCY.error].map(|error| FREQUENCY.y + error)
+}
+
+fn peak(row: &Combination) -> Option<Estimate> {
+    value(row, "oscillation_peak_rad_per_s")
+}
+
+/// The frequency over density: of people who turn together, and of people who do not.
+pub(super) fn frequencies(rows: &[Combination]) -> Panel {
+    let of = |rows: Vec<&Combination>| points(rows, |row| density(row), |row| peak(row));
+    let (together, apart): (Vec<_>, Vec<_>) = rows.iter().partition(|row| frequency(row).is_some());
+    let dense = [ONSET, DENSITIES[1]];
+    let marks = vec![
+        Mark::rectangle(dense, filmed(), BAND),
+        Mark::line(
+            dense.map(|density| [density, FREQUENCY.y]),
+            Style::broken(BLACK, 1.2, "filmed, over 10 m and more"),
+        ),
+        Mark::Points(
+            of(together),
+            Style::full(line_color(0), 3.0, "legs, together over 10 m and more"),
+        ),
+        Mark::Points(
+            of(apart),
+            Style::broken(line_color(0), 3.0, "legs, not together"),
+        ),
+    ];
+    let x = Axis::linear("density [P/m²]", DENSITIES);
+    let y = Axis::linear("frequency of the peak [rad/s]", [0.0, 0.6]);
+    Panel::new("people on legs in a square of 50 m × 20 m", x, y, marks)
+        .with_legend(Corner::LowerRight)
+}
+
 /// The frequency at some densities over the side of the square.
 fn by_size(rows: &[Combination]) -> Panel {
-    let band = [FREQUENCY.y - FREQUENCY.error, FREQUENCY.y + FREQUENCY.error];
-    let mut marks = vec![Mark::rectangle(SIDES, band, BAND)];
+    let mut marks = vec![Mark::rectangle(SIDES, filmed(), BAND)];
     for (k, at) in CURVES.into_iter().enumerate() {
         let here = rows.iter().filter(|row| density(row) == Some(at));
         let (squares, oblong): (Vec<_>, Vec<_>) =
             here.partition(|row| sides(row).is_some_and(|[width, height]| width == height));
-        let peak = |row: &Combination| value(row, "oscillation_peak_rad_per_s");
         let of = |rows: Vec<&Combination>| points(rows, |row| side(row), |row| peak(row));
         let style = |label: &str| Style::full(line_color(k), 1.0, label);
         marks.extend(curve(of(squares), style(&format!("{at} P/m²")), 2.2));
