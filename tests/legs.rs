@@ -367,12 +367,15 @@ fn a_lone_person_walks_upright_if_its_legs_are_fast_and_sways_if_they_are_slow()
 }
 
 #[test]
-fn people_enter_upright_with_legs_as_fast_as_their_bodies() {
-    let mut crowd = standing(alone(1.0), vec![person(Vector::zeros(), Vector::zeros())]);
-    crowd.agents[0].velocity = vector(0.8, -0.6);
-    let mut simulation = Simulation::new(crowd).unwrap();
-    simulation.evaluate();
-    let agents = simulation.frame().agents;
-    assert_eq!(agents.legs_velocity[0], vector(0.8, -0.6));
-    assert_eq!(agents.lean(0), Vector::zeros());
+fn people_enter_upright_with_legs_as_fast_as_their_bodies_unless_they_wait() {
+    let velocity = vector(0.8, -0.6);
+    for (premovement, expected) in [(None, velocity), (Some(3.0), Vector::zeros())] {
+        let mut crowd = standing(alone(1.0), vec![person(Vector::zeros(), Vector::zeros())]);
+        (crowd.agents[0].velocity, crowd.agents[0].premovement) = (velocity, premovement);
+        let mut simulation = Simulation::new(crowd).unwrap();
+        simulation.evaluate();
+        let agents = simulation.frame().agents;
+        assert_eq!(agents.legs_velocity[0], expected);
+        assert_eq!(agents.lean(0), Vector::zeros());
+    }
 }

@@ -47,8 +47,8 @@ pub struct SuiteOptions {
     /// (docs/validation.md)
     #[arg(long, value_name = "DIR")]
     pub data: Option<PathBuf>,
-    /// This profile in place of the default ones (verify: sph, sf->sph, rvo->sph; validate: also walk+sph); give it
-    /// several times for several profiles
+    /// This profile in place of the default ones (verify: sph, sf->sph, rvo->sph; validate: also walk+sph and
+    /// steer+sph); give it several times for several profiles
     #[arg(long, value_name = "PROFILE", value_parser = PossibleValuesParser::new(catalog::names()))]
     pub profile: Vec<String>,
     /// Number of seeds per run: 1, 2, …; verify: a case passes if it does with all of them; validate: means over seeds

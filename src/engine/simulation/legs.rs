@@ -15,7 +15,7 @@ impl Simulation {
     /// Puts legs under agents that entered since.
     pub(super) fn put_on_legs(&mut self) {
         if self.fixed.needs.legs {
-            self.crowd.agents.stand();
+            self.crowd.agents.stand(self.crowd.clock.time());
         }
     }
 
