@@ -4,7 +4,7 @@ use rand::Rng;
 use serde::Serialize;
 
 use super::plans::is_clearly_quicker;
-use super::sight::Sight;
+use super::sight::Seen;
 use super::{Crowd, PlaceState, Simulation, bound};
 use crate::engine::journeys::{Choice, Journey, JourneyStage, Kind, Place, Status, Trip};
 use crate::engine::math::Vector;
@@ -26,7 +26,7 @@ impl Simulation {
             crowd: &self.crowd,
             agent: i,
             is_asked: true,
-            sight: None,
+            seen: None,
         };
         (trip.status == Status::Walking).then(|| chooser.decide(trip, Some(trip.place)))
     }
@@ -41,7 +41,7 @@ pub(super) struct Chooser<'a> {
     /// Whether all its expectations are asked for, or only its decision.
     pub(super) is_asked: bool,
     /// What it sees, if that is known.
-    pub(super) sight: Option<&'a Sight>,
+    pub(super) seen: Option<&'a Seen>,
 }
 
 /// A place of an agent's stage, as the agent sees it.
@@ -224,7 +224,7 @@ impl Chooser<'_> {
     fn prospects(&self, trip: &Trip) -> Vec<Prospect> {
         let places = &self.stage(trip).places;
         let position = self.crowd.agents.position[self.agent];
-        let lengths = self.sight.map(|sight| sight.lengths.clone());
+        let lengths = self.seen.map(|seen| seen.lengths.clone());
         let lengths = lengths.unwrap_or_else(|| self.lengths(position, places));
         let seen = places.iter().zip(lengths).enumerate();
         seen.map(|(k, (&place, length))| self.see(trip, k, (place, length)))
@@ -254,7 +254,7 @@ impl Chooser<'_> {
     /// Adds the waits on the ways to the expected times. A place that is not clearly quicker than place `before`
     /// without them is not quicker with them: its time stays too short unless it is asked for.
     fn expect_waits(&self, prospects: &mut [Prospect], before: Option<u16>) {
-        let mut known = self.sight.and_then(|sight| sight.leaving.clone());
+        let mut known = self.seen.and_then(|seen| seen.leaving.clone());
         let mut wait = |prospect: &mut Prospect| {
             let to = (self.agent, prospect.place, prospect.length);
             let expected = prospect.expected.as_mut()?;

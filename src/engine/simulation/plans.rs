@@ -1,4 +1,5 @@
-//! Ways by time: in coarse frames agents that enter a room, and now and then all others, compare its openings.
+//! Ways by time: in coarse frames agents that enter a room compare its openings. Those that have a choice compare them
+//! again now and then.
 //!
 //! An agent expects to pass an opening when it has walked there, or when all agents that are bound for it and nearer
 //! have passed at its flow, whichever is later. Beyond it, the least time to the goal is that of Dijkstra's algorithm
@@ -17,9 +18,9 @@ use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Scene;
 use crate::engine::ways::{Known, Leaving, Plan, Rooms, Step, Ways};
 
-/// Agents compare their ways again after a random time in this range, seconds.
+/// Agents are due again after a random time in this range, seconds.
 const AGAIN: [f64; 2] = [2.0, 5.0];
-/// After their first comparison, agents look again sooner: most begin before others have chosen.
+/// After their first comparison, agents are due again sooner: most begin before others have chosen.
 const FIRST_AGAIN: [f64; 2] = [0.5, 2.0];
 /// Agents decide in the order of their ids times this odd number, modulo 2³².
 const ORDER: u32 = 0x9E37_79B9;
@@ -50,18 +51,14 @@ pub(super) fn is_clearly_quicker(new: f64, old: f64) -> bool {
     new < old - LEAST_GAIN.max(LEAST_SHARE * old)
 }
 
-/// An agent that is due.
+/// An agent that compares its ways.
 struct Due {
     agent: usize,
-    /// The triangles where it was and where it is.
+    /// The triangle where it was.
     from: Option<u32>,
-    here: u32,
     /// How far it can move without leaving its room, meters.
     clear: f64,
-    goal: u16,
-    /// The frame in which it is due again.
-    again: u64,
-    /// The ways that it compares.
+    /// The ways.
     leaving: Leaving,
 }
 
@@ -97,7 +94,7 @@ impl Simulation {
         Some(Comparison {
             plan,
             shortest: leaving.shortest.and_then(|shortest| shortest.step),
-            outlooks: crowd.outlooks_of(scene, i, (plan.goal, &leaving)),
+            outlooks: crowd.outlooks_of(scene, i, &leaving),
         })
     }
 }
@@ -150,8 +147,9 @@ impl Crowd {
         self.progress.onward = known.into_iter().map(Option::unwrap_or_default).collect();
     }
 
-    /// The agents that enter a room, have a new goal or compare their ways again, in a fixed order. The others only
-    /// note where they are.
+    /// The agents that enter a room, have a new goal or compare their ways again, in a fixed order. Of the others,
+    /// those that may have left their room note where they are, and those that are due but have no choice draw a new
+    /// time.
     fn due(&mut self, scene: &Scene, ways: &Ways, rooms: &Rooms) -> Vec<Due> {
         let mut plans = std::mem::take(&mut self.agents.plan);
         plans.resize(self.agents.len(), None);
@@ -170,19 +168,19 @@ impl Crowd {
             if plan.is_some_and(|plan| goes_on(&plan) && plan.stays_at(p)) {
                 return None;
             }
-            let goes_on = |plan: &Plan| {
+            let keeps_plan = |plan: &Plan| {
                 goes_on(plan) || Some(plan.goal) == goal && has_no_choice(plan, rooms)
             };
             let from = plan.map(|plan| plan.triangle);
-            let here = rooms.floor.locate_or_nearest(from, p);
-            let (Some(goal), Some(here)) = (goal, here) else {
+            let locate = |goal| Some((goal, rooms.floor.locate_or_nearest(from, p)?));
+            let Some((goal, here)) = goal.and_then(locate) else {
                 *plan = None;
                 return None;
             };
             let clear = rooms.clear(here, p);
             if let Some(plan) = plan
                 && rooms.room(plan.triangle) == rooms.room(here)
-                && goes_on(plan)
+                && keeps_plan(plan)
             {
                 (plan.triangle, plan.located, plan.clear) = (here, p, clear);
                 if plan.decides_at <= frame {
@@ -194,10 +192,7 @@ impl Crowd {
             Some(Due {
                 agent,
                 from,
-                here,
                 clear,
-                goal,
-                again: crowd.due_again(scene, agent, *plan),
                 leaving: ways.leaving((p, here), goal, Known::default())?,
             })
         });
@@ -219,15 +214,8 @@ impl Crowd {
 
     /// An agent that is due compares its ways; `afresh`: whatever it has planned.
     fn plan(&mut self, scene: &Scene, due: &Due, afresh: bool) {
-        let &Due {
-            agent: i,
-            here,
-            clear,
-            goal,
-            again,
-            ref leaving,
-            ..
-        } = due;
+        let (i, leaving) = (due.agent, &due.leaving);
+        let (here, goal) = (leaving.triangle, leaving.goal);
         let (Some(ways), Some(rooms)) = (&scene.ways, scene.rooms()) else {
             return;
         };
@@ -250,7 +238,7 @@ impl Crowd {
                 self.progress.places[usize::from(door)].passed += 1;
             }
         }
-        let outlooks = self.outlooks_of(scene, i, (goal, leaving));
+        let outlooks = self.outlooks_of(scene, i, leaving);
         let kept = kept(
             old.filter(|old| old.goal == goal && !afresh),
             taken,
@@ -274,15 +262,12 @@ impl Crowd {
         let plan = Plan {
             triangle: here,
             located: p,
-            clear,
+            clear: due.clear,
             goal,
             toward,
             crossed,
             detours,
-            decides_at: match afresh {
-                true => self.due_again(scene, i, old),
-                false => again,
-            },
+            decides_at: self.due_again(scene, i, old),
             turns: turns(old),
             changes: old.map_or(0, |old| old.changes) + u32::from(changes),
         };
@@ -318,7 +303,7 @@ fn has_no_choice(plan: &Plan, rooms: &Rooms) -> bool {
     !plan.detours && plan.toward == only && only.is_some_and(is_narrow)
 }
 
-/// The number of comparisons of an agent with this one, after those of plan `old`.
+/// The number of draws of `decides_at` with this one, after those of plan `old`.
 fn turns(old: Option<Plan>) -> u32 {
     old.map_or(0, |old| old.turns) + 1
 }

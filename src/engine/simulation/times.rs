@@ -94,16 +94,11 @@ impl Times<'_> {
         self.rooms.onward(goal, leg)
     }
 
-    /// The times of the ways that leave a room, for a goal and a speed, m/s; `onward` are the times beyond, for the
+    /// The times of the ways that leave a room, for a speed, m/s; `onward` are the times beyond to their goal, for the
     /// scene's speed.
     ///
     /// Ways lead over the middles of openings, but the length of the shortest one is exact.
-    pub fn outlooks(
-        &self,
-        leaving: &Leaving,
-        (goal, onward): (usize, &[f64]),
-        speed: f64,
-    ) -> Vec<Outlook> {
+    pub fn outlooks(&self, leaving: &Leaving, onward: &[f64], speed: f64) -> Vec<Outlook> {
         let speed = speed.max(SLOWEST);
         let slower = 1.0 / speed - 1.0 / self.scene.preferred_speed.max(SLOWEST);
         let exact = leaving.shortest.filter(|_| !self.rooms.has_one_way());
@@ -119,7 +114,7 @@ impl Times<'_> {
         let through = through.filter_map(|&(step, [length, aside])| {
             let onward = onward.get(step as usize).filter(|time| time.is_finite())?;
             let until_through = self.leg(Some(step), length, (speed, true));
-            let from = self.rooms.length_from(step, goal);
+            let from = self.rooms.length_from(step, usize::from(leaving.goal));
             let over = length + aside + from;
             let excess = exact
                 .filter(|exact| exact.step == Some(step))
@@ -149,17 +144,16 @@ impl Simulation {
         let (Some(times), Some(goal)) = known else {
             return ways.course(p, to);
         };
-        let (rooms, goal) = (times.rooms, usize::from(goal));
-        let onward = times.onward(goal);
+        let (rooms, onward) = (times.rooms, times.onward(usize::from(goal)));
         let (mut points, mut here, mut back) = (Vec::new(), p, None);
         for _ in 0..=rooms.steps() {
             let Some(t) = rooms.floor.locate_or_nearest(None, here) else {
                 break;
             };
-            let Some(leaving) = ways.leaving((here, t), goal as u16, Known::default()) else {
+            let Some(leaving) = ways.leaving((here, t), goal, Known::default()) else {
                 break;
             };
-            let mut all = times.outlooks(&leaving, (goal, &onward), scene.preferred_speed);
+            let mut all = times.outlooks(&leaving, &onward, scene.preferred_speed);
             all.retain(|outlook| outlook.step.is_none() || outlook.step != back);
             let Some(best) = all.into_iter().min_by(|a, b| a.total.total_cmp(&b.total)) else {
                 break;
@@ -168,7 +162,7 @@ impl Simulation {
             let mut course = ways.course(here, to);
             let crossing = rooms.first_crossing(here, t, course.iter().copied());
             if crossing.map(|crossing| crossing.step) != best.step {
-                course = rooms.course((here, t), goal, best.step);
+                course = rooms.course((here, t), usize::from(goal), best.step);
             } else if let Some(crossing) = crossing {
                 course.truncate(crossing.after);
                 course.push(crossing.at);
@@ -212,30 +206,24 @@ impl Crowd {
     }
 
     /// The times that agent `i` expects for the ways out of its room to a goal.
-    pub(super) fn outlooks_of(
-        &self,
-        scene: &Scene,
-        i: usize,
-        (goal, leaving): (u16, &Leaving),
-    ) -> Vec<Outlook> {
-        let goal = usize::from(goal);
-        let onward = self.progress.onward.get(goal);
+    pub(super) fn outlooks_of(&self, scene: &Scene, i: usize, leaving: &Leaving) -> Vec<Outlook> {
+        let onward = self.progress.onward.get(usize::from(leaving.goal));
         let (Some(times), Some(onward)) = (self.times(scene), onward) else {
             return Vec::new();
         };
         let own = self.agents.preferred_speed.get(i).copied();
         let speed = own.unwrap_or(scene.preferred_speed);
-        times.outlooks(leaving, (goal, onward), speed)
+        times.outlooks(leaving, onward, speed)
     }
 
-    /// The triangle of agent `i`, and the ways out of its room that lead to a goal, if agents choose by time. The
-    /// shortest way is `length` meters long; `known`: the same for another goal.
+    /// The ways out of the room of agent `i` that lead to a goal, if agents choose by time. The shortest way is
+    /// `length` meters long; `known`: the same for another goal.
     pub(super) fn leaving_to(
         &self,
         scene: &Scene,
         (i, goal, length): (usize, u16, f64),
-        known: Option<&(u32, Leaving)>,
-    ) -> Option<(u32, Leaving)> {
+        known: Option<&Leaving>,
+    ) -> Option<Leaving> {
         let rooms = scene.rooms().filter(|_| scene.by_time())?;
         let p = self.agents.position[i];
         let locate = || {
@@ -243,26 +231,26 @@ impl Crowd {
             let before = plan.map(|plan| plan.triangle);
             rooms.floor.locate_or_nearest(before, p)
         };
-        let here = known.map(|known| known.0).or_else(locate)?;
-        let of_way = Known {
-            leaving: known.map(|known| &known.1),
+        let here = known.map(|known| known.triangle).or_else(locate)?;
+        let known = Known {
+            leaving: known,
             length: Some(length),
         };
-        let leaving = scene.ways.as_ref()?.leaving((p, here), goal, of_way)?;
-        Some((here, leaving))
+        scene.ways.as_ref()?.leaving((p, here), goal, known)
     }
 
     /// The time that agent `i` expects for the way to a goal, seconds, whose length is `length` meters; `None` if it is
-    /// not known. Keeps what other goals share in `known`.
+    /// not known. Keeps the ways out of its room in `known`: other goals share their lengths.
     pub(super) fn time_to(
         &self,
         scene: &Scene,
         (i, goal, length): (usize, u16, f64),
-        known: &mut Option<(u32, Leaving)>,
+        known: &mut Option<Leaving>,
     ) -> Option<f64> {
-        let (here, leaving) = self.leaving_to(scene, (i, goal, length), known.as_ref())?;
-        let all = self.outlooks_of(scene, i, (goal, &leaving));
-        *known = Some((here, leaving));
+        if known.as_ref().is_none_or(|known| known.goal != goal) {
+            *known = Some(self.leaving_to(scene, (i, goal, length), known.as_ref())?);
+        }
+        let all = self.outlooks_of(scene, i, known.as_ref()?);
         all.into_iter()
             .map(|outlook| outlook.total)
             .reduce(f64::min)

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bound::{self, Stream};
 use super::choice::Chooser;
-use super::sight::Sight;
+use super::sight::Seen;
 use super::{Crowd, EventKind, Simulation, Stage};
 use crate::engine::clock::Clock;
 use crate::engine::journeys::{ChangeKind, Kind, Status, Trip, WaitingArea};
@@ -161,9 +161,9 @@ impl Crowd {
         }
         self.serve_queues(scene);
         let due = self.where_due(|crowd, i| crowd.needs_attention(scene, i));
-        let sights = self.sights(scene, &due);
-        for (i, sight) in due.into_iter().zip(&sights) {
-            self.attend(scene, i, sight.as_ref());
+        let seen = self.seen_by(scene, &due);
+        for (i, seen) in due.into_iter().zip(&seen) {
+            self.attend(scene, i, seen.as_ref());
         }
     }
 
@@ -225,8 +225,8 @@ impl Crowd {
         self.choose(scene, i, None);
     }
 
-    /// Chooses a place of the current stage; `sight`: what the agent sees, if that is known.
-    fn choose(&mut self, scene: &Scene, i: usize, sight: Option<&Sight>) {
+    /// Chooses a place of the current stage; `seen`: what the agent sees, if that is known.
+    fn choose(&mut self, scene: &Scene, i: usize, seen: Option<&Seen>) {
         let Some(mut trip) = self.agents.trip[i] else {
             return;
         };
@@ -235,7 +235,7 @@ impl Crowd {
             crowd: self,
             agent: i,
             is_asked: false,
-            sight: sight.filter(|sight| sight.stage == trip.stage),
+            seen: seen.filter(|seen| seen.stage == trip.stage),
         };
         let before = (trip.status == Status::Walking).then_some(trip.place);
         let (place, chooses_at) = chooser.choose(&trip, before);
@@ -310,7 +310,7 @@ impl Crowd {
         }
     }
 
-    fn attend(&mut self, scene: &Scene, i: usize, sight: Option<&Sight>) {
+    fn attend(&mut self, scene: &Scene, i: usize, seen: Option<&Seen>) {
         let Some(trip) = self.agents.trip[i] else {
             return;
         };
@@ -332,7 +332,7 @@ impl Crowd {
         let frame = self.clock.frame();
         let trip = self.agents.trip[i].as_ref();
         if trip.is_some_and(|trip| trip.status == Status::Walking && trip.chooses_at <= frame) {
-            self.choose(scene, i, sight);
+            self.choose(scene, i, seen);
         }
     }
 

@@ -24,6 +24,10 @@ pub struct Shortest {
 /// The ways out of a room that lead to a goal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Leaving {
+    /// The triangle of the rooms from which they lead.
+    pub triangle: u32,
+    /// The number of the path map to the goal.
+    pub goal: u16,
     /// The length of the way to the goal inside of the room, meters.
     pub direct: Option<f64>,
     /// Steps out of the room, each with the length of the way to its opening and the distance from where that ends to
@@ -64,7 +68,7 @@ impl Ways {
         let mesh = &rooms.floor.mesh;
         let triangles = (0..mesh.triangles().len() as u32).into_par_iter();
         let beneath = triangles.map(|t| self.floor.locate_or_nearest(None, mesh.middle(t)));
-        self.beneath = beneath.map(Option::unwrap_or_default).collect();
+        self.beneath = beneath.collect();
         self.rooms = Some(rooms);
     }
 
@@ -95,7 +99,7 @@ impl Ways {
             Some(length) => Some(Shortest { step: only, length }),
             None => {
                 let beneath = self.beneath[t as usize];
-                let here = self.floor.locate_or_nearest(Some(beneath), p)?;
+                let here = self.floor.locate_or_nearest(beneath, p)?;
                 let way = self.maps[goal].way(&self.floor, p, here, None);
                 way.map(|way| Shortest {
                     step: only.or_else(|| {
@@ -107,6 +111,8 @@ impl Ways {
             }
         };
         Some(Leaving {
+            triangle: t,
+            goal: map,
             direct,
             through,
             shortest,

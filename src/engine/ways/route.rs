@@ -42,7 +42,7 @@ pub struct Ways {
     /// The rooms of the floor, for ways by time and through doors.
     pub(super) rooms: Option<Rooms>,
     /// For each triangle of the rooms, the triangle of the floor at its middle.
-    pub(super) beneath: Vec<u32>,
+    pub(super) beneath: Vec<Option<u32>>,
 }
 
 /// The path map that a route follows.
