@@ -97,5 +97,6 @@ mod way_field;
 mod way_finding;
 mod way_oracles;
 mod way_reach;
+mod way_rooms;
 mod ways;
 mod ways_by_time;

@@ -57,7 +57,7 @@ struct Due {
     /// The triangle where it was.
     from: Option<u32>,
     /// How far it can move without leaving its room, meters.
-    clear: f64,
+    free_distance: f64,
     /// The ways.
     leaving: Leaving,
 }
@@ -177,12 +177,12 @@ impl Crowd {
                 *plan = None;
                 return None;
             };
-            let clear = rooms.clear(here, p);
+            let free_distance = rooms.free_distance(here, p);
             if let Some(plan) = plan
                 && rooms.room(plan.triangle) == rooms.room(here)
                 && keeps_plan(plan)
             {
-                (plan.triangle, plan.located, plan.clear) = (here, p, clear);
+                (plan.triangle, plan.located, plan.free_distance) = (here, p, free_distance);
                 if plan.decides_at <= frame {
                     plan.decides_at = crowd.due_again(scene, agent, Some(*plan));
                     plan.turns += 1;
@@ -192,7 +192,7 @@ impl Crowd {
             Some(Due {
                 agent,
                 from,
-                clear,
+                free_distance,
                 leaving: ways.leaving((p, here), goal, Known::default())?,
             })
         });
@@ -262,7 +262,7 @@ impl Crowd {
         let plan = Plan {
             triangle: here,
             located: p,
-            clear: due.clear,
+            free_distance: due.free_distance,
             goal,
             toward,
             crossed,

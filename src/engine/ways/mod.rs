@@ -16,6 +16,7 @@ mod expansion;
 mod floor;
 mod goal;
 mod grid;
+mod limits;
 mod list;
 mod map;
 mod mesh;

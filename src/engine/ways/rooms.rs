@@ -15,6 +15,7 @@ use super::course::{end, points};
 use super::cuts::{Cuts, Door, parts};
 use super::floor::Floor;
 use super::goal::Goal;
+use super::limits::Limits;
 use super::map::PathMap;
 use super::mesh::Mesh;
 use super::opening::{MARGIN, Opening, Step, on_both_sides, openings};
@@ -23,10 +24,6 @@ use crate::engine::math::{Vector, direction, perpendicular};
 
 /// Wider passages are no openings, meters: the walk through them takes no waiting that counts.
 pub const WIDEST: f64 = 6.0;
-/// Distances to openings are clamped to this, meters: agents farther from them are located again after such a move.
-const CLEAR: f64 = 1.0;
-/// Agents are never deeper in walls than this, meters.
-const IN_WALLS: f64 = 0.5;
 
 /// The rooms of a floor, and the ways in them.
 #[derive(Debug, Clone)]
@@ -40,8 +37,7 @@ pub struct Rooms {
     /// The steps out of each room, and those of them that can be taken.
     around: Vec<Vec<Step>>,
     out: Vec<Vec<Step>>,
-    /// For each triangle, the openings of its room near it.
-    near: Vec<Vec<u32>>,
+    limits: Limits,
     /// For each step, the steps that can come before it in its room, with the length of the way between the middles of
     /// their openings, meters.
     before: Vec<Vec<(Step, f64)>>,
@@ -78,7 +74,7 @@ impl Rooms {
         let mut rooms = Self {
             around: vec![Vec::new(); count as usize],
             out: vec![Vec::new(); count as usize],
-            near: Vec::new(),
+            limits: Limits::of(&floor.mesh, &of_triangle),
             before: vec![Vec::new(); 2 * openings.len()],
             goals: Vec::new(),
             last: Vec::new(),
@@ -95,8 +91,6 @@ impl Rooms {
                 rooms.out[source].push(step);
             }
         }
-        let triangles = (0..rooms.of_triangle.len() as u32).into_par_iter();
-        rooms.near = triangles.map(|t| rooms.openings_near(t)).collect();
         let before = (0..rooms.steps()).into_par_iter();
         rooms.before = before.map(|step| rooms.steps_before(step)).collect();
         for goals in goals {
@@ -247,28 +241,10 @@ impl Rooms {
         steps.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// A distance, at most a meter, that an agent at `p` in triangle `t` can move without leaving its room.
-    pub fn clear(&self, t: u32, p: Vector) -> f64 {
-        let near = self.near[t as usize].iter();
-        let distances = near.map(|&k| self.openings[k as usize].distance(p));
-        distances.fold(CLEAR, f64::min)
-    }
-
-    /// The openings of its room near triangle `t`.
-    fn openings_near(&self, t: u32) -> Vec<u32> {
-        let mesh = &self.floor.mesh;
-        let middle = mesh.middle(t);
-        let corners = mesh.corners(t);
-        let radius = corners
-            .iter()
-            .map(|c| (c - middle).norm())
-            .fold(0.0, f64::max);
-        let around = self.around[self.room(t) as usize].iter();
-        let near = around.map(|step| step / 2).filter(|&k| {
-            let distance = self.openings[k as usize].distance(middle);
-            distance < radius + CLEAR + IN_WALLS
-        });
-        near.collect()
+    /// The distance from `p` in triangle `t` to the nearest opening or closed passage at which its room ends, at most a
+    /// meter. An agent that stays nearer to `p` stays in the room.
+    pub fn free_distance(&self, t: u32, p: Vector) -> f64 {
+        self.limits.distance(t, p)
     }
 
     /// The length of the way from `p` in triangle `t` to the opening of a step, inside of the room, meters.
@@ -348,11 +324,7 @@ impl Rooms {
             + maps.chain(&self.goals).map(PathMap::bytes).sum::<usize>()
             + before.sum::<usize>() * size_of::<(Step, f64)>()
             + size_of_val(&self.of_triangle[..])
-            + self
-                .near
-                .iter()
-                .map(|near| size_of_val(&near[..]))
-                .sum::<usize>()
+            + self.limits.bytes()
     }
 
     /// Whether agents may take a step: it does not lead through a one-way door against its direction.
