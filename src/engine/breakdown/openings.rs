@@ -11,7 +11,7 @@ pub struct WayChoice {
     pub ways: Vec<WaySeen>,
     /// Why it takes its way.
     pub reason: &'static str,
-    /// When it compares them again, seconds.
+    /// When it compares them again if it has a choice, seconds.
     pub again_at_secs: f64,
     /// How often it has changed its mind.
     pub changes: u32,
