@@ -373,7 +373,7 @@ fn people_enter_upright_with_legs_as_fast_as_their_bodies_unless_they_wait() {
         let mut crowd = standing(alone(1.0), vec![person(Vector::zeros(), Vector::zeros())]);
         (crowd.agents[0].velocity, crowd.agents[0].premovement) = (velocity, premovement);
         let mut simulation = Simulation::new(crowd).unwrap();
-        simulation.evaluate();
+        simulation.evaluate().unwrap();
         let agents = simulation.frame().agents;
         assert_eq!(agents.legs_velocity[0], expected);
         assert_eq!(agents.lean(0), Vector::zeros());
