@@ -14,7 +14,7 @@ pub struct Calibrated {
     pub name: &'static str,
     /// The people whom it describes, and what it was fitted to.
     pub about: &'static str,
-    /// The calibration that gives its parameters.
+    /// The calibration that searches its parameters.
     pub study: &'static str,
     /// The profile of the paper that it changes.
     pub base: &'static str,
