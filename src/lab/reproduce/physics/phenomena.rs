@@ -20,10 +20,13 @@ pub const PRODUCT: Product = Product {
 
 fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
     let rows: Vec<_> = studies.iter().map(Gathered::combinations).collect();
-    let mut panels = vec![queue_pushes::strongest(&rows[0])];
-    panels.extend(with_legend(oscillations::spectra(&rows[2]), 1));
-    panels.push(start_waves::fronts(&rows[1]));
-    panels.push(swaying::frequencies(&rows[3]));
+    let fronts = [
+        queue_pushes::strongest(&rows[0]),
+        start_waves::fronts(&rows[1]),
+    ];
+    let spectra = with_legend(oscillations::spectra(&rows[2]), 1);
+    let legs = swaying::frequencies(&rows[3]);
+    let panels = fronts.into_iter().chain(spectra).chain([legs]).collect();
     let title = "Waves in crowds: what people did (black and gray) and what the model does";
     save(
         &Sheet::new(title, 2, [290.0, 220.0], panels),
