@@ -300,7 +300,8 @@ fn a_lone_person_with_slow_legs_turns_at_the_frequency_of_the_closed_form() {
 
 #[test]
 fn momentum_decays_with_the_friction_of_bodies_and_of_legs() {
-    // Without a speed of balance, only frictions change the momentum; legs begin with their bodies and repel each other.
+    // Without a speed of balance, only frictions change the momentum. Legs begin with their bodies and repel each
+    // other.
     let parameters = Parameters {
         balance_speed: Some(0.0),
         unbalancing_rate: Some(0.3),

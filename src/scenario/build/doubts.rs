@@ -224,8 +224,8 @@ fn spectra(keys: &File) -> Vec<String> {
         let lowest = 2.0 * TAU / secs;
         (secs > 0.0 && lowest > wanted).then(|| {
             format!(
-                "measurements[{k}].oscillation: in {secs} s peaks are found from {lowest:.2} rad/s on, and `band` begins \
-                 at {wanted}: measure for at least {:.0} s",
+                "measurements[{k}].oscillation: in {secs} s peaks are found from {lowest:.2} rad/s on, and `band` \
+                 begins at {wanted}: measure for at least {:.0} s",
                 (2.0 * TAU / wanted).ceil()
             )
         })
