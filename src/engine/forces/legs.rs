@@ -11,8 +11,8 @@
 //!
 //! This reading differs from the publication in five points. (1) Its damping −λ v_i is the goal force: a person who
 //! stands brakes with K^goal/(τ m_i). (2) People of the publication go nowhere. Here they also walk: s_i is the part of
-//! v_i along v_i^pref, between 0 and v_i^pref, so that legs keep up with the walk. It is zero for those who stand, and
-//! for those who press forward in vain. (3) Forces end at R, without a jump between bodies.
+//! v_i along v_i^pref, between 0 and v_i^pref, so that legs keep up with the walk. It is zero for agents that stand or
+//! press forward in vain. (3) Forces end at R, without a jump between bodies.
 //! People (and walls) are near each other if their bodies are. (4) The lean has a limit, at which the body pulls the
 //! legs along. The pull does not act on the body. (5) No leg is behind a wall that its body is in front of.
 //!
