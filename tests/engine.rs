@@ -87,6 +87,7 @@ mod stiff_forces;
 mod stuck;
 mod voronoi;
 mod waiting;
+mod waits;
 mod walking;
 mod walking_profiles;
 mod walls;

@@ -294,3 +294,98 @@ fn densities_count_the_walkable_part_of_a_region() {
         );
     }
 }
+
+#[test]
+fn a_gap_of_exactly_the_limit_is_a_pause_whatever_its_rounding() {
+    // Gaps of 3.0, 3.5 and 4.0 s after different times: as differences of floats, some are below their limit.
+    for limit in [3.0, 3.5, 4.0] {
+        for delay in 0..25 {
+            let start = f64::from(delay) * 0.1;
+            let walk = |(k, from): (usize, f64)| {
+                let y = 9.0 * k as f64;
+                json!({"position": [0, y], "goal": [1, y], "remove_within": 0.5, "premovement_secs": from})
+            };
+            let starts = [start, start + limit].into_iter().enumerate();
+            let document = json!({
+                "profile": "sf", "duration_secs": 12, "agents": starts.map(walk).collect::<Vec<_>>(),
+                "measurements": [{"pauses": {"arrivals": 2, "longer_than_secs": limit}}],
+            });
+            let scenario = Scenario::parse(&document.to_string(), "f.json", &[]).unwrap();
+            let mut run = Run::new(scenario).unwrap();
+            run.drive::<Fault, dyn Observer<Fault>>(&mut [], || false)
+                .unwrap();
+            let arrived = run.simulation.outcome().arrivals.iter();
+            let frames: Vec<i64> = arrived
+                .map(|one| (one.time / 0.02).round() as i64)
+                .collect();
+            let gap = frames[1] - frames[0];
+            let is_pause = gap >= (limit * 50.0).round() as i64;
+            let expected = if is_pause { gap as f64 * 0.02 } else { 0.0 };
+            let found = Summary::of(&run).metric("pauses_secs").unwrap();
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "{limit} s after {start} s: {found}, {frames:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_floor_behind_an_exit_is_no_part_of_a_region() {
+    let measure = |region: Value| {
+        let flow = json!({"line": [[4, 0], [4, 4]], "region": region, "part": [0, 1], "name": "l"});
+        json!([{"walks": {"region": region, "until_secs": 2}}, {"line_flow": flow}])
+    };
+    let summary = |region: Value| {
+        measured(json!({
+            "duration_secs": 6, "profile": "sph", "walkable_area": [[[[0, 0], [6, 0], [6, 4], [0, 4]]]],
+            "exits": [{"name": "door", "line": [[6, 1], [6, 3]]}],
+            "agents": [{"position": [0.5, 2]}, {"position": [1, 1]}],
+            "measurements": measure(region),
+        }))
+    };
+    let inside = summary(json!([[0, 0], [6, 4]]));
+    let beyond = summary(json!([[-3, -3], [15, 7]]));
+    for name in [
+        "walks_density_per_m2",
+        "walks_flow_per_m_per_s",
+        "l_density_per_m2",
+        "l_speed_m_per_s",
+    ] {
+        let [a, b] = [&inside, &beyond].map(|one| one.metric(name).unwrap());
+        assert!((a - b).abs() < 1e-9 * a, "{name}: {a}, {b}");
+    }
+    // Two people on 24 m² for two seconds.
+    let density = beyond.metric("walks_density_per_m2").unwrap();
+    assert!((density - 2.0 / 24.0).abs() < 1e-9, "{density}");
+}
+
+#[test]
+fn a_person_who_walks_around_the_end_of_a_line_passes_it_once_and_around_a_ring_each_time() {
+    let passages = |obstacles: Value, line: Value| {
+        let summary = measured(json!({
+            "duration_secs": 90, "profile": "sph", "walkable_area": [[[[0, 0], [16, 0], [16, 8], [0, 8]]]],
+            "obstacles": obstacles, "exits": [{"name": "door", "line": [[16, 1], [16, 3]]}],
+            "waypoints": [{"name": "a", "at": [2, 2], "within": 0.3}, {"name": "b", "at": [12, 2], "within": 0.3},
+                          {"name": "c", "at": [12, 7], "within": 0.3}, {"name": "d", "at": [2, 7], "within": 0.3}],
+            "journeys": [{"name": "j", "stages": ["a", "b", "c", "d", "a", "b", "c", "d", "a", "b", "door"]}],
+            "agents": [{"position": [1, 2], "journey": "j"}],
+            "measurements": [{"line_flow": {"line": line}}],
+            "stop": {"when_empty": true},
+        }));
+        assert_eq!(summary.arrived, 1);
+        summary.metric("line_passages").unwrap()
+    };
+    for line in [
+        json!([[7, 0], [7, 4]]),
+        json!([[7, 4], [7, 0]]),
+        json!([[7, 1], [7, 3]]),
+    ] {
+        assert_eq!(passages(json!([]), line), 1.0);
+    }
+    // Around a block in the middle of the room.
+    let block = json!([[[4, 3.5], [10, 3.5], [10, 5], [4, 5]]]);
+    for line in [json!([[7, 0], [7, 3.5]]), json!([[7, 1], [7, 3]])] {
+        assert_eq!(passages(block.clone(), line), 3.0);
+    }
+}

@@ -3,6 +3,8 @@
 use std::f64::consts::{E, TAU};
 
 use sandbox::analysis::oscillation::{Oscillation, Spectrum, correlation_lengths};
+use sandbox::runs::drive::Run;
+use sandbox::runs::summary::Summary;
 use serde_json::json;
 
 use crate::common::simulated::{measured, scenario};
@@ -252,4 +254,64 @@ fn spectra_of_times_too_short_for_their_band_get_a_note() {
         over(79.0, None, 0.3)[0]
             .contains("from 0.31 rad/s on, and `band` begins at 0.3: measure for at least 42 s")
     );
+}
+
+#[test]
+fn the_speed_is_the_root_mean_square_without_a_window() {
+    // A push at the start: a Hann window hides it, or shows nothing else.
+    let document = json!({
+        "duration_secs": 20, "profile": "sph", "walkable_area": [[[[0, 0], [8, 0], [8, 6], [0, 6]]]],
+        "waiting_areas": [{"name": "square", "area": [[0, 0], [8, 0], [8, 6], [0, 6]]}],
+        "journeys": [{"name": "stay", "stages": ["square"]}],
+        "crowds": [{"area": [[0.3, 0.3], [7.7, 0.3], [7.7, 5.7], [0.3, 5.7]], "number": 90, "journey": "stay"}],
+        "events": [{"at_secs": 2, "for_secs": 1, "region": [[0, 0], [2, 6]],
+                    "acceleration": [[0, 0], [0.2, 6], [0.8, 6], [1, 0]]}],
+        "measurements": [{"oscillation": {"name": "all", "region": [[0, 0], [8, 6]]}},
+                         {"oscillation": {"name": "start", "region": [[0, 0], [8, 6]], "until_secs": 6.4}}],
+    });
+    let mut run = Run::new(scenario(&document, &[]).unwrap()).unwrap();
+    // The mean velocities in 4 × 3 boxes every 0.4 s.
+    let mut series: Vec<Vec<Option<[f64; 2]>>> = vec![Vec::new(); 12];
+    while run.end.is_none() {
+        run.simulation.evaluate().unwrap();
+        run.measure();
+        let frame = run.simulation.frame();
+        if frame.clock.frame() % 20 == 0 {
+            let mut sums = [(0.0, [0.0; 2]); 12];
+            for i in frame.agents.present() {
+                let (r, v) = (frame.agents.position[i], frame.agents.velocity[i]);
+                let place = |x: f64, most: usize| ((x / 2.0) as usize).min(most);
+                let (count, sum) = &mut sums[4 * place(r.y, 2) + place(r.x, 3)];
+                *count += 1.0;
+                *sum = [sum[0] + v.x, sum[1] + v.y];
+            }
+            for (box_, (count, sum)) in series.iter_mut().zip(sums) {
+                box_.push((count > 0.0).then(|| sum.map(|x| x / count)));
+            }
+        }
+        run.simulation.integrate().unwrap();
+    }
+    let summary = Summary::of(&run);
+    for (name, count) in [("all", 51), ("start", 17)] {
+        let boxes = series
+            .iter()
+            .map(|of| of[..count].iter().copied().collect::<Option<Vec<_>>>());
+        let (mut sum, mut times) = (0.0, 0.0);
+        for velocities in boxes.flatten() {
+            for k in 0..2 {
+                let mean = velocities.iter().map(|v| v[k]).sum::<f64>() / count as f64;
+                sum += velocities
+                    .iter()
+                    .map(|v| (v[k] - mean).powi(2))
+                    .sum::<f64>();
+            }
+            times += count as f64;
+        }
+        let expected = (sum / times).sqrt();
+        let found = summary.metric(&format!("{name}_speed_m_per_s")).unwrap();
+        assert!(
+            (found - expected).abs() < 1e-9,
+            "{name}: {found}, not {expected}"
+        );
+    }
 }

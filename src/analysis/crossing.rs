@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 
 /// A measurement line. Forward is from its left to its right, seen from its first end to its second.
@@ -32,11 +33,37 @@ impl Line {
         let within = (0.0..self.length() * self.length()).contains(&along);
         within.then_some((part, before > 0.0))
     }
+
+    /// Its continuations beyond both ends, each up to the next wall.
+    pub fn beside(&self, walls: &Walls) -> [Self; 2] {
+        let all: Vec<u32> = (0..walls.len() as u32).collect();
+        let half = 0.5 * (self.end - self.start);
+        let middle = self.start + half;
+        let to_wall = |half: Vector| {
+            let way = half / half.norm() * FARTHEST;
+            let wall = walls.first_crossing(middle, middle + way, &all);
+            let reach = wall.map_or(FARTHEST, |(part, _)| part * FARTHEST);
+            middle + way / FARTHEST * reach.max(half.norm())
+        };
+        let before = Self {
+            start: to_wall(-half),
+            end: self.start,
+        };
+        let after = Self {
+            start: self.end,
+            end: to_wall(half),
+        };
+        [before, after]
+    }
 }
+
+/// Lines are continued up to this far if no wall is there, meters.
+const FARTHEST: f64 = 1e4;
 
 /// The balance of a person at a line: the crossings forward minus the crossings backward, with the extremes so far. A
 /// crossing is a passage if the balance reaches a new extreme, so a person who sways back and forth across the line
-/// passes it once.
+/// passes it once. Who goes around the end of the line has a balance within these extremes, as after coming back
+/// through the line.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Balance {
     now: i64,
@@ -52,6 +79,12 @@ impl Balance {
         self.lowest = self.lowest.min(self.now);
         self.highest = self.highest.max(self.now);
         is_new
+    }
+
+    /// Counts a crossing of the line's continuation, which is never a passage.
+    pub fn goes_around(&mut self, is_forward: bool) {
+        let now = self.now + if is_forward { 1 } else { -1 };
+        self.now = now.clamp(self.lowest, self.highest);
     }
 }
 

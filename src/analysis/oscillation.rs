@@ -94,7 +94,7 @@ impl Spectrum {
             .map(|(k, (left, right))| [k as f64 * self.step, left + right])
     }
 
-    /// ⟨|v − ⟨v⟩|²⟩, m²/s².
+    /// ⟨|v − ⟨v⟩|²⟩, weighted by the window, m²/s².
     pub fn power(&self) -> f64 {
         self.densities().map(|[_, density]| density).sum::<f64>() * self.step
     }
@@ -176,6 +176,16 @@ impl Oscillation {
     pub fn peak_share(&self) -> Option<f64> {
         self.spectrum.share(self.spectrum.around(self.peak?))
     }
+}
+
+/// The root mean square over all times and boxes of the velocities minus their means over time, m/s; `None` if all boxes
+/// were empty at some time.
+pub fn speed(boxes: &[Option<Vec<[f64; 2]>>]) -> Option<f64> {
+    let still = boxes.iter().flatten().map(|series| without_mean(series));
+    let velocities: Vec<[f64; 2]> = still.flatten().collect();
+    let squares = velocities.iter().map(|[x, y]| x * x + y * y);
+    let count = velocities.len() as f64;
+    (count > 0.0).then(|| (squares.sum::<f64>() / count).sqrt())
 }
 
 /// How far apart boxes move together along x and along y, meters: the distance along a row or column of boxes from

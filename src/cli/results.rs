@@ -10,7 +10,7 @@ use crate::output::results as tables;
 use crate::runs::drive::{End, Run};
 use crate::runs::identity::Identity;
 use crate::runs::summary::{JourneyResult, PlaceResult, Summary, value};
-use crate::scenario::measurements::{HEADWAY, Integrity, Metric, STUCK_AFTER, StuckGroup};
+use crate::scenario::measurements::{HEADWAY, Integrity, Metric, Outside, STUCK_AFTER, StuckGroup};
 use crate::scenario::quote::shown;
 
 /// The summary, with version, identity, all settings, threads and run times.
@@ -112,7 +112,13 @@ fn overview(run: &Run, summary: &Summary) -> String {
     let queues = summary.longest_queues.iter();
     let queues = queues.map(|queue| {
         let (before, agents, secs) = (shown(&queue.before), queue.agents, queue.at_secs);
-        format!("{agents} before {before} after {secs:.0} s")
+        let outside = queue.outside.map_or(String::new(), |outside| {
+            let Outside {
+                agents, mean_secs, ..
+            } = outside;
+            format!(" ({agents} more stood outside of its line, {mean_secs:.0} s each on average)")
+        });
+        format!("{agents} before {before} after {secs:.0} s{outside}")
     });
     line("longest queue", listed(queues.collect(), "none"));
     let stuck = match summary.stuck {

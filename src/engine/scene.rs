@@ -194,6 +194,8 @@ pub struct Scene {
     pub max_speed_ratio: Option<f64>,
     /// The obstacles and their walls; in a periodic scene those of the neighboring periods, too.
     pub walls: Walls,
+    /// The outlines of the floors behind exits and entrances, where nobody counts, meters.
+    pub behind: Vec<Vec<Vector>>,
     /// The period of a periodic scene: at least twice as long as any agent reaches ([`Ranges::interaction`]).
     pub period: Option<Period>,
     /// Groups by index.
@@ -233,6 +235,7 @@ impl Default for Scene {
             max_speed: 1.8,
             max_speed_ratio: Some(1.8 / 1.4),
             walls: Walls::new(Vec::new()),
+            behind: Vec::new(),
             period: None,
             groups: Vec::new(),
             agents: Vec::new(),

@@ -54,7 +54,7 @@ pub struct Summary {
     /// The highest SPH density at an agent; `None` if no force needs densities.
     #[serde(default)]
     pub highest_density: Option<HighestDensity>,
-    /// The longest queue before each place and goal, the longest one first.
+    /// The longest queue before each place, goal, door and opening, the longest one first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub longest_queues: Vec<LongestQueue>,
     /// Why the run ended; `None` if it has not.
@@ -186,7 +186,7 @@ pub struct PlaceResult {
     pub name: String,
     /// `exit`, `waypoint`, `waiting area` or `queue`.
     pub kind: String,
-    /// The number of agents that have passed it.
+    /// The number of agents that have passed it, each counted once.
     pub passed: u32,
     /// For an exit: its share of all agents that have left at exits.
     pub share: Option<f64>,
@@ -216,7 +216,7 @@ impl PlaceResult {
             Self {
                 name: place.name.clone(),
                 kind: place.kind.name().to_owned(),
-                passed: state.passed,
+                passed: state.people.len() as u32,
                 share: (place.is_exit() && all > 0).then(|| times.len() as f64 / all as f64),
                 from_to_secs: times.first().zip(times.last()).map(|(&a, &b)| [a, b]),
                 waited_secs: (waits && state.passed > 0).then(|| state.waited / passed),

@@ -38,6 +38,7 @@ pub mod taut;
 #[cfg(feature = "program")]
 pub mod tracks;
 pub mod visibility;
+pub mod waits;
 pub mod walking;
 pub mod wall_checks;
 #[path = "../../experiments/src/walls/integrals.rs"]

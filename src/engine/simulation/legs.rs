@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::integrate::{Motion, find_motions, move_freely};
 use super::{Fixed, Simulation, Stage};
+use crate::engine::agents::Agents;
 use crate::engine::forces::legs::{Both, Legs};
 use crate::engine::frame::Frame;
 use crate::engine::geometry::Walls;
@@ -85,6 +86,28 @@ impl Simulation {
         });
         let agents = &mut self.crowd.agents;
         (agents.legs, agents.legs_velocity) = (legs, legs_velocity);
+    }
+}
+
+impl Fixed {
+    /// The body of agent `i` was held back before a line: it pulls its legs along at the limit of the lean.
+    pub(super) fn hold_legs(&self, agents: &mut Agents, i: usize) {
+        let Some(law) = self.blend(agents, i).legs() else {
+            return;
+        };
+        if agents.legs.len() != agents.len() {
+            return;
+        }
+        let (position, velocity) = (agents.position[i], agents.velocity[i]);
+        let (legs, legs_velocity) = (&mut agents.legs[i], &mut agents.legs_velocity[i]);
+        let both = (
+            std::slice::from_mut(legs),
+            std::slice::from_mut(legs_velocity),
+        );
+        hold(&law, (&[position], &[velocity]), both);
+        let walls = &self.scene.walls;
+        let near = walls.near_any(&[position, *legs], 0.0);
+        stop(walls, (position, &near), (legs, legs_velocity));
     }
 }
 

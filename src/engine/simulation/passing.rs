@@ -14,8 +14,6 @@ use crate::engine::neighbors::{BLOCK, Neighbors, TASK};
 use crate::engine::scene::Scene;
 use crate::engine::ways::{nearest_on, side};
 
-/// Agents that may not pass an exit stop this far before its line, meters.
-const STOP_BEFORE: f64 = 1e-3;
 /// The body of an agent that has left by an exit walks on this far behind the line, meters. With less, the flow through
 /// a door would depend on the position of the line, because agents walk slower behind a crowd than with free floor
 /// ahead.
@@ -29,12 +27,12 @@ const OUTSIDE_SECS: f64 = 30.0;
 
 /// A move across the line of a place.
 #[derive(Clone, Copy)]
-struct Crossing {
-    agent: usize,
+pub(super) struct Crossing {
+    pub(super) agent: usize,
     place: usize,
-    line: [Vector; 2],
+    pub(super) line: [Vector; 2],
     /// The fraction of the move before the line.
-    part: f64,
+    pub(super) part: f64,
     /// Whether the agent has not crossed the line, but met another agent on it.
     met: bool,
 }
@@ -74,20 +72,25 @@ impl Simulation {
     /// Agents that have crossed the line of their place go on to the next stage, or leave if it is an exit. At closed
     /// exits, and at exits that have reached their limit per second, they stop before the line.
     pub(super) fn pass_lines(&mut self) {
-        let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
+        let (fixed, crowd) = (&self.fixed, &mut self.crowd);
+        let scene = &fixed.scene;
         if scene.journeys.places.is_empty() {
             return;
         }
         let before = &self.buffers.before;
         self.stages.time(Stage::Journeys, || {
             let neighbors = &self.derived.neighbors;
-            let mut crossings = crowd.crossings(scene, before, neighbors);
+            let near = crowd.near_lines(scene, neighbors);
+            let mut crossings = crowd.crossings(scene, before, &near);
             if crowd.clock.is_coarse() {
                 crossings.extend(crowd.meetings(scene, &crossings));
             }
-            if !crossings.is_empty() {
-                crowd.pass(scene, before, &crossings);
+            let leaving = crowd.pass(scene, before, &crossings);
+            for crossing in &crossings {
+                fixed.hold_legs(&mut crowd.agents, crossing.agent);
             }
+            crowd.pass_doors(scene, before, &near);
+            crowd.leave(scene, leaving);
             if crowd.progress.outside > 0 {
                 crowd.remove_bodies(scene);
             }
@@ -96,8 +99,8 @@ impl Simulation {
 }
 
 impl Crowd {
-    /// All moves across lines, in the order in which they happened.
-    fn crossings(&self, scene: &Scene, before: &[Vector], neighbors: &Neighbors) -> Vec<Crossing> {
+    /// The agents that a move across a line may have brought where they are.
+    fn near_lines(&self, scene: &Scene, neighbors: &Neighbors) -> Vec<usize> {
         let positions = &self.agents.position;
         let mut near: Vec<u32> = Vec::new();
         for line in Line::all(scene, neighbors.longest_step()) {
@@ -107,6 +110,11 @@ impl Crowd {
         }
         near.sort_unstable();
         near.dedup(); // near two lines
+        near.into_iter().map(|agent| agent as usize).collect()
+    }
+
+    /// All moves across lines by agents of `near`, in the order in which they happened.
+    fn crossings(&self, scene: &Scene, before: &[Vector], near: &[usize]) -> Vec<Crossing> {
         let closed: Vec<u16> = (0..scene.journeys.places.len() as u16)
             .filter(|&place| self.is_closed(scene, place))
             .collect();
@@ -137,8 +145,7 @@ impl Crowd {
             });
             crossings.min_by(|a, b| a.part.total_cmp(&b.part))
         };
-        let near = near.into_iter().map(|agent| agent as usize);
-        let mut found: Vec<Crossing> = near.filter_map(crossing).collect();
+        let mut found: Vec<Crossing> = near.iter().copied().filter_map(crossing).collect();
         let id = |crossing: &Crossing| agents.id[crossing.agent];
         found.sort_by(|a, b| a.part.total_cmp(&b.part).then(id(a).cmp(&id(b))));
         found
@@ -186,24 +193,14 @@ impl Crowd {
         found
     }
 
-    /// Whether a place stops some agents, also those that are not bound for it.
-    fn is_closed(&self, scene: &Scene, place: u16) -> bool {
-        let state = self.progress.places.get(usize::from(place));
-        let is_shut = state.is_some_and(|state| !state.open);
-        match &scene.journeys.places[usize::from(place)].kind {
-            Kind::Exit(_) => is_shut,
-            Kind::Door(door) => is_shut || door.one_way,
-            _ => false,
-        }
-    }
-
-    /// Whether an open one-way door lets agents pass that come from this side, which is positive on its left.
-    fn lets_pass(&self, scene: &Scene, place: usize, from: f64) -> bool {
-        let is_door = matches!(scene.journeys.places[place].kind, Kind::Door(_));
-        is_door && self.progress.places[place].open && from > 0.0
-    }
-
-    fn pass(&mut self, scene: &Scene, before: &[Vector], crossings: &[Crossing]) {
+    /// Agents go on that cross the lines of their places, or are held back. Returns those that leave, each with the
+    /// direction in which its body walks on.
+    fn pass(
+        &mut self,
+        scene: &Scene,
+        before: &[Vector],
+        crossings: &[Crossing],
+    ) -> Vec<(usize, Option<Vector>)> {
         let mut leaving = Vec::new();
         for crossing in crossings {
             let i = crossing.agent;
@@ -231,7 +228,7 @@ impl Crowd {
             let way = (!crossing.met).then(|| self.agents.position[i] - before[i]);
             leaving.push((i, way.map(|way| across(crossing.line, way))));
         }
-        self.leave(scene, leaving);
+        leaving
     }
 
     /// Agent `i` passes a place of its stage, which may differ from the one that it chose.
@@ -244,30 +241,6 @@ impl Crowd {
         }
     }
 
-    /// Stops an agent before a line; it slides along the line, unless a wall or another line is in its way.
-    fn hold_back(&mut self, scene: &Scene, from: Vector, crossing: &Crossing) {
-        let (position, velocity) = (
-            &mut self.agents.position[crossing.agent],
-            &mut self.agents.velocity[crossing.agent],
-        );
-        let way = *position - from;
-        let length = way.norm();
-        let across = across(crossing.line, way);
-        let kept = (crossing.part * length - STOP_BEFORE).max(0.0);
-        let stop = from + direction(way) * kept;
-        let rest = way * (1.0 - kept / length);
-        let end = stop + rest - across * rest.dot(&across);
-        let near = scene.walls.near_any(&[stop, end], 0.0);
-        let mut lines = scene.journeys.places.iter().filter_map(Place::line);
-        let is_free = scene.walls.first_crossing(stop, end, &near).is_none()
-            && lines.all(|line| crossed([stop, end], line).is_none());
-        *position = if is_free { end } else { stop };
-        *velocity = match is_free {
-            true => *velocity - across * velocity.dot(&across).max(0.0),
-            false => Vector::zeros(),
-        };
-    }
-
     /// Agents leave; the bodies of those with a direction in which they crossed the line walk on.
     fn leave(&mut self, scene: &Scene, leaving: Vec<(usize, Option<Vector>)>) {
         let mut gone = Vec::new();
@@ -276,7 +249,7 @@ impl Crowd {
                 continue;
             };
             let state = &mut self.progress.places[usize::from(trip.place)];
-            state.pass();
+            state.pass(self.agents.id[i]);
             let group = usize::from(self.agents.group[i]);
             self.outcome.arrivals.push(Arrival {
                 id: self.agents.id[i],
@@ -362,7 +335,7 @@ impl Crowd {
 }
 
 /// The direction across a line on the side to which `way` leads, of length 1.
-fn across([a, b]: [Vector; 2], way: Vector) -> Vector {
+pub(super) fn across([a, b]: [Vector; 2], way: Vector) -> Vector {
     let across = perpendicular(direction(b - a));
     if across.dot(&way) > 0.0 {
         across
@@ -381,7 +354,7 @@ fn room_ahead(scene: &Scene, p: Vector, way: Vector) -> f64 {
 }
 
 /// The fraction of a move after which it crosses a line; `None` if it does not.
-fn crossed([from, to]: [Vector; 2], [a, b]: [Vector; 2]) -> Option<f64> {
+pub(super) fn crossed([from, to]: [Vector; 2], [a, b]: [Vector; 2]) -> Option<f64> {
     let [start, end] = [from, to].map(|p| side(a, b, p));
     let [left, right] = [a, b].map(|p| side(from, to, p));
     let crosses = (start > 0.0) != (end > 0.0) && (left > 0.0) != (right > 0.0);

@@ -234,9 +234,6 @@ impl Crowd {
         let taken = from.and_then(|from| rooms.step_between(from, rooms.room(here), p));
         if let Some(step) = taken {
             self.progress.steps[step as usize].pass();
-            if let Some(door) = rooms.opening(step).door() {
-                self.progress.places[usize::from(door)].passed += 1;
-            }
         }
         let outlooks = self.outlooks_of(scene, i, leaving);
         let kept = kept(

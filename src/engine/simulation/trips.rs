@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::bound::{self, Stream};
 use super::choice::Chooser;
+use super::place_state::PlaceState;
 use super::sight::Seen;
 use super::{Crowd, EventKind, Simulation, Stage};
 use crate::engine::clock::Clock;
 use crate::engine::journeys::{ChangeKind, Kind, Status, Trip, WaitingArea};
-use crate::engine::math::Vector;
 use crate::engine::neighbors::{BLOCK, TASK};
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Scene;
@@ -33,79 +33,6 @@ pub struct Progress {
     pub(super) onward: Vec<Vec<f64>>,
     /// The largest flow per meter of all lines when they were last observed, P/(m s).
     pub(super) per_meter: f64,
-}
-
-/// The state of a place.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PlaceState {
-    /// Whether agents can pass the exit, or wait in the waiting area.
-    pub open: bool,
-    /// The number of agents that have chosen it and have not yet passed it.
-    pub bound: u32,
-    /// The number of agents that have passed it.
-    pub passed: u32,
-    /// The total time that agents have waited here, seconds.
-    pub waited: f64,
-    /// The agents bound for it, and those that have passed it.
-    pub stream: Stream,
-    /// When the next agent may pass, seconds.
-    pub(super) ready: f64,
-    /// The number of tickets given out for its queue.
-    pub(super) tickets: u32,
-    /// The largest number of agents that have stood in its queue at once.
-    pub longest: u32,
-    /// Which spots of the waiting area are taken.
-    taken: Vec<bool>,
-}
-
-impl Default for PlaceState {
-    fn default() -> Self {
-        Self {
-            open: true,
-            bound: 0,
-            passed: 0,
-            waited: 0.0,
-            stream: Stream::default(),
-            ready: 0.0,
-            tickets: 0,
-            longest: 0,
-            taken: Vec::new(),
-        }
-    }
-}
-
-impl PlaceState {
-    /// Records that an agent that was bound for this place passes it.
-    pub(super) fn pass(&mut self) {
-        self.bound = self.bound.saturating_sub(1);
-        self.passed += 1;
-        self.stream.pass();
-    }
-
-    /// Takes the first free one of `spots`, or the free one nearest to a point, and returns its index; if none is free,
-    /// an index beyond the last spot.
-    fn free_spot(&mut self, spots: &[Vector], near: Option<Vector>) -> usize {
-        self.taken.resize(self.taken.len().max(spots.len()), false);
-        let mut free = (0..spots.len()).filter(|&k| !self.taken[k]);
-        let spot = match near {
-            None => free.next(),
-            Some(p) => {
-                let distance = |&k: &usize| (spots[k] - p).norm_squared();
-                free.min_by(|a, b| distance(a).total_cmp(&distance(b)))
-            }
-        };
-        let spot = spot.unwrap_or(spots.len());
-        self.taken.resize(self.taken.len().max(spot + 1), true);
-        self.taken[spot] = true;
-        spot
-    }
-
-    /// The agent at a spot of the waiting area leaves it.
-    pub(super) fn leave_spot(&mut self, spot: u32) {
-        if let Some(taken) = self.taken.get_mut(spot as usize) {
-            *taken = false;
-        }
-    }
 }
 
 impl Progress {
@@ -276,7 +203,7 @@ impl Crowd {
             return;
         };
         let state = &mut self.progress.places[usize::from(trip.place)];
-        state.pass();
+        state.pass(self.agents.id[i]);
         let stages = &scene.journeys.journeys[usize::from(trip.journey)].stages;
         trip.status = Status::Finished;
         trip.chooses_at = u64::MAX;

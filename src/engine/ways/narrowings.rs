@@ -5,10 +5,14 @@ use std::ops::RangeInclusive;
 
 use super::mesh::Mesh;
 use super::narrow::{End, Narrow, narrow};
-use crate::engine::math::{Vector, bounds};
+use crate::engine::math::{Vector, bounds, direction};
 
 /// The side of a cell, meters.
 const CELL: f64 = 4.0;
+/// Lengths that differ by less are equal, meters.
+const EQUAL: f64 = 1e-6;
+/// A way this near to the end of an opening crosses it, meters.
+const AT_END: f64 = 1e-6;
 
 /// The narrow places of a floor.
 #[derive(Debug, Clone, Default)]
@@ -32,14 +36,39 @@ impl Narrowings {
     /// The passages of a floor up to `widest` meters wide: the diameters of circles between two walls into which no
     /// wall reaches.
     pub fn of(mesh: &Mesh, widest: f64) -> Self {
-        let ends = |passage: Narrow| {
-            let to = match passage.to {
-                End::Corner(corner) => mesh.point(corner),
-                End::Wall { at, .. } => at,
-            };
-            [mesh.point(passage.from), to]
+        Self::at(passages(mesh, widest))
+    }
+
+    /// These, such as doors, and after them the passages of a floor up to `widest` meters wide, the narrowest first. Of
+    /// two whose middles are nearer than the width of the narrower one, such as the two sides of a wall with a door,
+    /// only the first counts.
+    #[must_use]
+    pub fn and_openings(self, mesh: &Mesh, widest: f64) -> Self {
+        let width = |[a, b]: &[Vector; 2]| (b - a).norm();
+        let order = |one: &[Vector; 2]| {
+            let at = middle(*one);
+            // Rounding must not decide which of two equal ones comes first.
+            [width(one), at.x, at.y].map(|x| (x / EQUAL).round())
         };
-        let places: Vec<_> = narrow(mesh, widest).into_iter().map(ends).collect();
+        let mut found = passages(mesh, widest);
+        found.sort_by(|a, b| {
+            let ([a, x, y], [b, u, v]) = (order(a), order(b));
+            a.total_cmp(&b).then(x.total_cmp(&u)).then(y.total_cmp(&v))
+        });
+        let mut kept = self.places;
+        for one in found {
+            let is_near = |other: &[Vector; 2]| {
+                (middle(one) - middle(*other)).norm() < width(&one).min(width(other))
+            };
+            if !kept.iter().any(is_near) {
+                kept.push(one);
+            }
+        }
+        Self::at(kept)
+    }
+
+    /// Those with these ends, meters.
+    pub fn at(places: Vec<[Vector; 2]>) -> Self {
         let mut cells: BTreeMap<_, Vec<u32>> = BTreeMap::new();
         for (k, &place) in places.iter().enumerate() {
             for cell in cells_of(place) {
@@ -47,6 +76,36 @@ impl Narrowings {
             }
         }
         Self { places, cells }
+    }
+
+    /// The middle of number `k`, meters.
+    pub fn middle(&self, k: u32) -> Vector {
+        middle(self.places[k as usize])
+    }
+
+    /// The numbers of those that the straight way from `from` to `to` crosses, each with its distance from `from`,
+    /// meters. Ways bend at corners, where openings end: their ends count.
+    pub fn crossed(&self, from: Vector, to: Vector) -> Vec<(u32, f64)> {
+        let (length, heading) = ((to - from).norm(), direction(to - from));
+        let pieces = (length / CELL).ceil().max(1.0);
+        let mut found: Vec<(u32, f64)> = Vec::new();
+        for piece in 0..pieces as u32 {
+            let ends = [piece, piece + 1].map(|k| from + (to - from) * (f64::from(k) / pieces));
+            let near = cells_of(ends).filter_map(|cell| self.cells.get(&cell));
+            for &k in near.flatten() {
+                let [a, b] = self.places[k as usize];
+                let along = direction(b - a);
+                let across = heading.perp(&along);
+                let distance = (a - from).perp(&along) / across;
+                let place = (a - from).perp(&heading) / across;
+                let is_crossed = (-AT_END..=length + AT_END).contains(&distance)
+                    && (-AT_END..=(b - a).norm() + AT_END).contains(&place);
+                if is_crossed && found.iter().all(|&(other, _)| other != k) {
+                    found.push((k, distance.clamp(0.0, length)));
+                }
+            }
+        }
+        found
     }
 
     /// The first narrowing on the straight way from `p` in this direction, of length 1, at most `far` meters away.
@@ -68,6 +127,22 @@ impl Narrowings {
         });
         crossed.min_by(|one, other| one.distance.total_cmp(&other.distance))
     }
+}
+
+/// The ends of the passages of a floor up to `widest` meters wide.
+fn passages(mesh: &Mesh, widest: f64) -> Vec<[Vector; 2]> {
+    let ends = |passage: Narrow| {
+        let to = match passage.to {
+            End::Corner(corner) => mesh.point(corner),
+            End::Wall { at, .. } => at,
+        };
+        [mesh.point(passage.from), to]
+    };
+    narrow(mesh, widest).into_iter().map(ends).collect()
+}
+
+fn middle([a, b]: [Vector; 2]) -> Vector {
+    0.5 * (a + b)
 }
 
 /// The cells of the rectangle around two points.

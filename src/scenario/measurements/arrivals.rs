@@ -4,8 +4,12 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Measure, Observed, Quantity};
+use crate::engine::clock::Clock;
 use crate::engine::simulation::Simulation;
 use crate::scenario::keys::limits::LONGEST_TIME;
+
+/// Decimal times are rarely whole frames: a part of a frame.
+const ROUNDING: f64 = 1e-6;
 
 /// (n − 1) / (time of the n-th counted arrival − time of the first), P/s.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -167,7 +171,7 @@ impl Measure for Pauses {
         let Some(times) = first(simulation, self.arrivals) else {
             return vec![None, None];
         };
-        let paused = paused(&times, self.longer_than_secs);
+        let paused = paused(&times, self.longer_than_secs, simulation.frame().clock);
         vec![Some(paused), flow(&times, paused)]
     }
 }
@@ -214,9 +218,11 @@ fn flow(times: &[f64], paused: f64) -> Option<f64> {
     (span > 0.0).then(|| (times.len() - 1) as f64 / span)
 }
 
-/// The sum of all gaps of at least `longest` seconds between ascending times, seconds.
-fn paused(times: &[f64], longest: f64) -> f64 {
-    let gaps = times.windows(2).map(|pair| pair[1] - pair[0]);
-    gaps.filter(|&gap| gap >= longest)
-        .fold(0.0, |sum, gap| sum + gap)
+/// The sum of all gaps of at least `longest` seconds between ascending times of frames, seconds. Gaps are whole frames.
+fn paused(times: &[f64], longest: f64, clock: &Clock) -> f64 {
+    let frames: Vec<u64> = times.iter().map(|&time| clock.frame_at(time)).collect();
+    let gaps = frames.windows(2).map(|pair| pair[1] - pair[0]);
+    let longest = longest / clock.time_step();
+    let paused = gaps.filter(|&gap| gap as f64 >= longest - ROUNDING);
+    clock.time_at(paused.sum())
 }

@@ -8,9 +8,7 @@ use super::window::walkable_area;
 use super::{Measure, Observed, Quantity};
 use crate::analysis::crossing::{Balance, Line, Passages};
 use crate::engine::clock::Clock;
-use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
-use crate::engine::period::Period;
 use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -77,6 +75,9 @@ pub struct Seen {
     samples: Vec<Sample>,
     /// How many arrivals were seen.
     arrivals: usize,
+    /// The line's continuations to the next walls, which follow from the scene.
+    #[serde(skip)]
+    beside: Option<[Line; 2]>,
 }
 
 impl LineFlow {
@@ -150,7 +151,7 @@ impl Measure for LineFlow {
         seen.arrivals = arrivals.len();
         let moment = Moment {
             clock: frame.clock,
-            period: simulation.scene().period,
+            scene: simulation.scene(),
             entered: agents.entered() as usize,
         };
         let gone = gone.iter().map(|arrival| (arrival.id, arrival.position));
@@ -160,7 +161,7 @@ impl Measure for LineFlow {
     }
 
     fn values(&self, seen: &Seen, simulation: &Simulation) -> Vec<Option<f64>> {
-        self.results(seen, &simulation.scene().walls)
+        self.results(seen, simulation.scene())
     }
 
     fn data(&self, seen: &Seen) -> Option<(String, Value)> {
@@ -171,7 +172,7 @@ impl Measure for LineFlow {
 /// A frame, apart from the people.
 struct Moment<'a> {
     clock: &'a Clock,
-    period: Option<Period>,
+    scene: &'a Scene,
     /// Above all ids.
     entered: usize,
 }
@@ -195,13 +196,13 @@ impl LineFlow {
             let there = there.map(|p| (p as u32, tracks.place_at(p, time)));
             let moment = Moment {
                 clock: &clock,
-                period: None,
+                scene,
                 entered: times.len(),
             };
             self.see(&mut seen, &moment, std::iter::empty(), there);
         }
         let names = self.quantities().into_iter().map(|one| one.name);
-        let values = names.zip(self.results(&seen, &scene.walls)).collect();
+        let values = names.zip(self.results(&seen, scene)).collect();
         (values, (self.name().to_owned(), json!(seen.times)))
     }
 
@@ -213,24 +214,35 @@ impl LineFlow {
         gone: impl Iterator<Item = (u32, Vector)>,
         there: impl Iterator<Item = (u32, Vector)>,
     ) {
-        let Moment { clock, period, .. } = *moment;
+        let Moment { clock, scene, .. } = *moment;
         let (now, step) = (clock.time(), clock.time_step());
         let line = self.line();
         let before = seen.times.len();
         seen.tracks.resize(moment.entered, None);
         let way = |from: Vector, to: Vector| {
             let way = to - from;
-            period.map_or(way, |period| period.shortest(way))
+            scene.period.map_or(way, |period| period.shortest(way))
         };
+        let new = || line.beside(&scene.walls);
+        let beside = *seen.beside.get_or_insert_with(new);
         let mut passed = |track: &mut Track, position: Vector| {
             // A move across the end of the period is seen at both ends.
             let (last, way) = (track.last, way(track.last, position));
             let leaving = line.crossed(last, last + way);
             let crossed = leaving.or_else(|| line.crossed(position - way, position));
-            if let Some((part, is_forward)) = crossed
-                && track.balance.passes(is_forward)
-            {
-                seen.times.push(now - step + step * part);
+            match crossed {
+                Some((part, is_forward)) if track.balance.passes(is_forward) => {
+                    seen.times.push(now - step + step * part);
+                }
+                Some(_) => {}
+                None => {
+                    let around = beside
+                        .iter()
+                        .find_map(|line| line.crossed(last, last + way));
+                    if let Some((_, is_forward)) = around {
+                        track.balance.goes_around(is_forward);
+                    }
+                }
             }
             track.last = position;
         };
@@ -272,7 +284,7 @@ impl LineFlow {
         }
     }
 
-    fn results(&self, seen: &Seen, walls: &Walls) -> Vec<Option<f64>> {
+    fn results(&self, seen: &Seen, scene: &Scene) -> Vec<Option<f64>> {
         let flow = self.flow(&seen.times);
         let region = self.region.map(Region::from);
         let ends = flow.map_or([f64::NAN; 2], |(ends, _)| ends);
@@ -290,7 +302,7 @@ impl LineFlow {
             flow.map(|(_, flow)| flow),
             region
                 .filter(|_| count > 0.0)
-                .map(|region| agents / (count * walkable_area(region, walls))),
+                .map(|region| agents / (count * walkable_area(region, scene))),
             (moving > 0.0).then(|| speeds / moving),
         ]
     }

@@ -65,8 +65,9 @@ impl Metrics {
         self.overview.highest()
     }
 
-    /// The longest queue before each place and goal, the longest one first. In a queue are the agents that walk there
-    /// slower than [`SLOW`](super::SLOW) times their preferred speed, from the place up to the first
+    /// The longest queue before each passage, the longest one first: before exits, waypoints, waiting areas and goals,
+    /// declared doors, and openings of the floor. In a queue are the agents whose ways lead through the passage and that
+    /// are slower than [`SLOW`](super::SLOW) times their preferred speed, from the passage up to the first
     /// [`GAP`](super::GAP) along their ways; at a place with a queue of its own, the agents in it. Observed every
     /// second.
     pub fn longest_queues(&self, simulation: &Simulation) -> Vec<LongestQueue> {

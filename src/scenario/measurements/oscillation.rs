@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::window::{Samples, Window};
 use super::{About, Measure, Observed, Quantity};
-use crate::analysis::oscillation::{Oscillation as Found, correlation_lengths};
+use crate::analysis::oscillation::{Oscillation as Found, correlation_lengths, speed};
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -168,7 +168,7 @@ impl Measure for Oscillation {
             (
                 "speed_m_per_s",
                 "m/s",
-                "root mean square of the mean velocities, minus their means over time",
+                "root mean square, over times and boxes, of the mean velocities minus their means over time",
             ),
             (
                 "spin",
@@ -238,7 +238,7 @@ impl Measure for Oscillation {
             found.peak,
             found.peak_share(),
             found.spectrum.share(self.band),
-            Some(found.spectrum.power().sqrt()),
+            speed(&series),
             mean(|spin| *spin),
             mean(|spin| spin * spin).map(f64::sqrt),
             [x, y].into_iter().flatten().reduce(f64::max),

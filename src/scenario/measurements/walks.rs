@@ -6,9 +6,8 @@ use serde_json::{Value, json};
 
 use super::window::walkable_area;
 use super::{Measure, Observed, Quantity};
-use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
-use crate::engine::scene::Region;
+use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::keys::limits::LONGEST_TIME;
@@ -73,8 +72,8 @@ impl Walks {
     }
 
     /// Square meters.
-    fn area(&self, walls: &Walls) -> Option<f64> {
-        Some(walkable_area(self.region?.into(), walls))
+    fn area(&self, scene: &Scene) -> Option<f64> {
+        Some(walkable_area(self.region?.into(), scene))
     }
 }
 
@@ -168,9 +167,7 @@ impl Measure for Walks {
         let walks = || seen.walks.iter().flatten().map(|(walk, _)| walk);
         let sum = |of: fn(&Walk) -> f64| walks().map(of).sum::<f64>();
         let (secs, meters) = (sum(|walk| walk.secs), sum(|walk| walk.meters));
-        let product = self
-            .area(&simulation.scene().walls)
-            .map(|area| area * seen.secs);
+        let product = self.area(simulation.scene()).map(|area| area * seen.secs);
         let per_area = |sum: f64| product.filter(|of| *of > 0.0).map(|of| sum / of);
         let delays = walks().filter_map(|walk| Some(walk.started_secs? - walk.due_secs));
         vec![

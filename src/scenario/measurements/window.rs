@@ -6,8 +6,8 @@ use serde::Deserialize;
 use super::is_due;
 use crate::analysis::body_forces::BODY_MASS;
 use crate::analysis::local::{Local, local};
-use crate::engine::geometry::{Area, Ring, Walls};
-use crate::engine::scene::Region;
+use crate::engine::geometry::{Area, Ring};
+use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::floor_plan::parts_on_floor;
@@ -27,11 +27,11 @@ pub fn body_mass() -> f64 {
     BODY_MASS
 }
 
-/// The part of a region in which people can walk, square meters.
-pub fn walkable_area(region: Region, walls: &Walls) -> f64 {
+/// The part of a region in which people walk and count, square meters: without the floors behind exits and entrances.
+pub fn walkable_area(region: Region, scene: &Scene) -> f64 {
     let whole = region.area();
     let corners = Ring::new(region.corners().to_vec());
-    let parts = corners.map(|corners| parts_on_floor(&corners, walls, &Vec::new()));
+    let parts = corners.map(|corners| parts_on_floor(&corners, &scene.walls, &scene.behind));
     let Ok(Ok(parts)) = parts else {
         return whole;
     };

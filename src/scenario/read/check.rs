@@ -105,6 +105,7 @@ impl Draft {
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let Surroundings { solids, behind } = surroundings::surroundings(keys)?;
         let mut scene = empty_scene(keys, solids);
+        scene.behind.clone_from(&behind);
         let default = ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned()));
         let choice = keys.profile.as_ref().unwrap_or(&default);
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;

@@ -3,10 +3,12 @@
 use super::{Aim, STUCK_AFTER, left};
 use crate::engine::agents::RADIUS_RANGE;
 use crate::engine::geometry::Walls;
-use crate::engine::journeys::Kind;
+use crate::engine::journeys::{ChangeKind, Door, Kind};
 use crate::engine::math::{Vector, direction};
 use crate::engine::simulation::Simulation;
+use crate::engine::ways::side;
 use crate::scenario::error::quote::shown;
+use crate::scenario::measurements::passages::Openings;
 
 /// Agents whose centers are this far ahead touch, or almost, as a multiple of the sum of the radii.
 const TOUCHING: f64 = 1.25;
@@ -19,7 +21,7 @@ const CONE: f64 = 0.5;
 const TOUCH: f64 = 0.01;
 
 /// The likely cause, in words.
-pub fn of(simulation: &Simulation, i: usize, aim: Aim) -> String {
+pub fn of(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> String {
     let (scene, frame) = (simulation.scene(), simulation.frame());
     let (agents, walls) = (frame.agents, frame.walls);
     let p = agents.position[i];
@@ -27,6 +29,9 @@ pub fn of(simulation: &Simulation, i: usize, aim: Aim) -> String {
         return "its preferred speed is 0".to_owned();
     }
     if let Some(reason) = unreachable(simulation, p, aim) {
+        return reason;
+    }
+    if let Some(reason) = shut(simulation, doors.doors_ahead(simulation, (i, aim))) {
         return reason;
     }
     let ahead = heading(simulation, i, aim);
@@ -89,7 +94,8 @@ fn unreachable(simulation: &Simulation, p: Vector, aim: Aim) -> Option<String> {
             let (kind, name) = (place.kind.name(), shown(&place.name));
             let state = simulation.progress().places.get(usize::from(number));
             if matches!(place.kind, Kind::Exit(_)) && state.is_some_and(|state| !state.open) {
-                return Some(format!("the exit `{name}` is closed"));
+                let until = until(simulation, number);
+                return Some(format!("the exit `{name}` is closed{until}"));
             }
             (!has_way).then(|| format!("no way leads to the {kind} `{name}`"))
         }
@@ -101,6 +107,37 @@ fn unreachable(simulation: &Simulation, p: Vector, aim: Aim) -> Option<String> {
         }
         Aim::Goal(_) | Aim::Direction(_) => None,
     }
+}
+
+/// Why the doors on the way of an agent let nobody pass, each with a point of the way before it.
+fn shut(simulation: &Simulation, doors: Vec<(u16, Vector)>) -> Option<String> {
+    let shut = |(number, before): (u16, Vector)| {
+        let place = &simulation.scene().journeys.places[usize::from(number)];
+        let (name, state) = (
+            shown(&place.name),
+            simulation.progress().places.get(usize::from(number)),
+        );
+        if state.is_some_and(|state| !state.open) {
+            let until = until(simulation, number);
+            return Some(format!("the door `{name}` is closed{until}"));
+        }
+        let Kind::Door(Door { line, one_way }) = place.kind else {
+            return None;
+        };
+        let is_against = one_way && side(line[0], line[1], before) < 0.0;
+        is_against.then(|| format!("the door `{name}` lets people pass only the other way"))
+    };
+    doors.into_iter().find_map(shut)
+}
+
+/// Until when a closed exit or door is closed, with a blank before it; empty if it does not open again.
+fn until(simulation: &Simulation, number: u16) -> String {
+    let now = simulation.frame().clock.time();
+    let mut changes = simulation.scene().journeys.changes.iter();
+    let opens = changes.find(|change| {
+        change.place == number && change.kind == ChangeKind::Open && change.at > now
+    });
+    opens.map_or(String::new(), |change| format!(" until {} s", change.at))
 }
 
 /// The direction in which agent `i` wants to walk; zero if it wants to stay.

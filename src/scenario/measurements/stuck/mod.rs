@@ -6,6 +6,7 @@ use std::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
 
+use super::passages::Openings;
 use super::{Measure, Observed, is_due};
 use crate::engine::journeys::Status;
 use crate::engine::math::Vector;
@@ -46,6 +47,15 @@ pub(super) enum Aim {
 }
 
 impl Aim {
+    /// Where ways lead to it; `None` if it is a direction.
+    pub(super) fn destination(self) -> Option<Destination> {
+        match self {
+            Self::Goal(goal) => Some(Destination::Goal(goal)),
+            Self::Place(place) => Some(Destination::Place(place)),
+            Self::Direction(_) => None,
+        }
+    }
+
     /// An order of aims, in which equal ones are neighbors.
     pub(super) fn order(&self, other: &Self) -> Ordering {
         let key = |aim: &Self| match *aim {
@@ -121,9 +131,10 @@ pub(super) fn agents(seen: &[Option<Headway>], simulation: &Simulation) -> Vec<(
 /// The agents that are stuck in the current frame, grouped by the likely cause, the largest group first.
 pub(super) fn groups(seen: &[Option<Headway>], simulation: &Simulation) -> Vec<StuckGroup> {
     let frame = simulation.frame();
+    let doors = Openings::doors(simulation.scene());
     let mut groups: Vec<StuckGroup> = Vec::new();
     for (i, since, aim) in agents(seen, simulation) {
-        let cause = cause::of(simulation, i, aim);
+        let cause = cause::of(simulation, i, aim, &doors);
         match groups.iter_mut().find(|group| group.cause == cause) {
             Some(group) => group.agents += 1,
             None => groups.push(StuckGroup {

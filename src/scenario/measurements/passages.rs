@@ -1,0 +1,165 @@
+//! The passages on the way of an agent: openings of the floor, declared doors, and what it walks to.
+
+use std::collections::BTreeMap;
+
+use super::stuck::Aim;
+use crate::engine::journeys::Kind;
+use crate::engine::math::Vector;
+use crate::engine::scene::Scene;
+use crate::engine::simulation::Simulation;
+use crate::engine::ways::{Destination, Detour, Narrowings, WIDEST, Ways};
+
+/// A way through an opening goes on this far behind it, meters.
+const BEYOND: f64 = 1e-3;
+
+/// An opening of the floor, with its distance along a way, meters.
+pub(super) type Crossing = (u32, f64);
+
+/// The openings of a floor.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Openings {
+    /// Those that are declared doors come first.
+    all: Narrowings,
+    /// The numbers of the places of these doors.
+    doors: Vec<u16>,
+}
+
+/// The openings on ways that are known from a corner on: by what the ways lead to, and the first two of their points.
+pub(super) type Known = BTreeMap<(u16, [u64; 4]), Vec<Crossing>>;
+
+impl Openings {
+    /// Those of a scene with ways: its declared doors, and its narrow places.
+    pub(super) fn of(scene: &Scene) -> Self {
+        let Some(ways) = &scene.ways else {
+            return Self::default();
+        };
+        let doors = Self::doors(scene);
+        Self {
+            all: doors.all.and_openings(&ways.floor.mesh, WIDEST),
+            doors: doors.doors,
+        }
+    }
+
+    /// The declared doors alone.
+    pub(super) fn doors(scene: &Scene) -> Self {
+        let places = scene.journeys.places.iter().zip(0..);
+        let doors = places.filter_map(|(place, number)| match &place.kind {
+            Kind::Door(door) => Some((number, door.line)),
+            _ => None,
+        });
+        let (doors, lines): (Vec<u16>, Vec<[Vector; 2]>) = doors.unzip();
+        Self {
+            all: Narrowings::at(lines),
+            doors,
+        }
+    }
+
+    /// The declared doors on the way of agent `i` to its aim, in their order, each with a point of the way before it,
+    /// meters.
+    pub(super) fn doors_ahead(
+        &self,
+        simulation: &Simulation,
+        (i, aim): (usize, Aim),
+    ) -> Vec<(u16, Vector)> {
+        let ways = simulation.scene().ways.as_ref();
+        let Some((ways, to)) = ways
+            .zip(aim.destination())
+            .filter(|_| !self.doors.is_empty())
+        else {
+            return Vec::new();
+        };
+        let start = [simulation.frame().agents.position[i]];
+        let course = start.into_iter().chain(course(simulation, ways, (i, to)));
+        let course: Vec<Vector> = course.collect();
+        let crossed = course.windows(2).flat_map(|pair| {
+            let mut crossed = self.all.crossed(pair[0], pair[1]);
+            crossed.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+            crossed.into_iter().map(|(k, _)| (k, pair[0]))
+        });
+        let door = |(k, before): (u32, Vector)| Some((self.door(k)?, before));
+        crossed.filter_map(door).collect()
+    }
+
+    /// The number of the place of opening `k`, if it is a declared door.
+    pub(super) fn door(&self, k: u32) -> Option<u16> {
+        self.doors.get(k as usize).copied()
+    }
+
+    /// The middle of opening `k`, meters.
+    pub(super) fn middle(&self, k: u32) -> Vector {
+        self.all.middle(k)
+    }
+
+    /// The openings on the way of agent `i` to its aim, in their order, and the length of the way, meters; nothing
+    /// without a way around walls. `known` has those of other agents.
+    pub(super) fn ahead(
+        &self,
+        simulation: &Simulation,
+        (i, aim): (usize, Aim),
+        known: &mut Known,
+    ) -> Option<(Vec<Crossing>, f64)> {
+        let p = simulation.frame().agents.position[i];
+        let ways = simulation.scene().ways.as_ref()?;
+        let to = aim.destination()?;
+        let course = course(simulation, ways, (i, to));
+        let &first = course.first()?;
+        let mut found = self.all.crossed(p, first);
+        let distance = (first - p).norm();
+        let length = distance + self::length(&course);
+        if let (Some(second), Some(map)) = (course.get(1), ways.map_to(to)) {
+            let bits = [first.x, first.y, second.x, second.y].map(f64::to_bits);
+            let rest = known.entry((map, bits));
+            let rest = rest.or_insert_with(|| self.along(&course));
+            for &(k, beyond) in &*rest {
+                if found.iter().all(|&(other, _)| other != k) {
+                    found.push((k, distance + beyond));
+                }
+            }
+        }
+        found.sort_by(|(k, a), (l, b)| a.total_cmp(b).then(l.cmp(k)));
+        Some((found, length))
+    }
+
+    /// The openings on a way over these points, each with its distance along it, meters.
+    fn along(&self, course: &[Vector]) -> Vec<Crossing> {
+        let (mut found, mut before): (Vec<Crossing>, f64) = (Vec::new(), 0.0);
+        for pair in course.windows(2) {
+            for (k, distance) in self.all.crossed(pair[0], pair[1]) {
+                if found.iter().all(|&(other, _)| other != k) {
+                    found.push((k, before + distance));
+                }
+            }
+            before += (pair[1] - pair[0]).norm();
+        }
+        found
+    }
+}
+
+/// The points of the way of agent `i`, meters: of the way through another opening than that of the shortest one, if it
+/// has chosen that.
+fn course(simulation: &Simulation, ways: &Ways, (i, to): (usize, Destination)) -> Vec<Vector> {
+    let agents = simulation.frame().agents;
+    let p = agents.position[i];
+    let plan = agents.plan.get(i).and_then(Option::as_ref);
+    let step = plan.and_then(|plan| match plan.detour(ways, to)? {
+        Detour::Opening(step) => Some((plan, step)),
+        Detour::Room => None,
+    });
+    let through = step.and_then(|(plan, step)| {
+        let rooms = ways.rooms()?;
+        let here = rooms.floor.locate_or_nearest(Some(plan.triangle), p)?;
+        let mut course = rooms.course((p, here), usize::from(plan.goal), Some(step));
+        let behind = course.last()? + rooms.ahead(step) * BEYOND;
+        course.push(behind);
+        course.extend(ways.course(behind, to));
+        Some(course)
+    });
+    through.unwrap_or_else(|| ways.course(p, to))
+}
+
+fn length(course: &[Vector]) -> f64 {
+    course
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).norm())
+        .sum()
+}

@@ -1,0 +1,325 @@
+//! People who wait for a passage.
+//!
+//! A passage is an exit, a waypoint or waiting area that people walk to, a declared door, or an opening of the floor. In
+//! the queue before it are the people whose ways lead through it and who are slow, in the order of their distances along
+//! their ways, from the passage up to the first gap.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::lines::{Lines, Outside};
+use super::passages::{Crossing, Known, Openings};
+use super::stuck::{Aim, Headway};
+use crate::engine::journeys::{Kind, Place};
+use crate::engine::math::Vector;
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::quote::to_centimeters;
+
+/// An agent stands in a queue if it walks slower than this part of its preferred speed.
+pub const SLOW: f64 = 0.5;
+/// A queue ends where the next agent is farther behind than this along the way, meters.
+pub const GAP: f64 = 3.0;
+/// Time between two observations, seconds.
+pub(super) const EVERY: f64 = 1.0;
+/// The fewest agents in a queue.
+const FEWEST: u32 = 2;
+/// Passages at distances that differ by less are at one place, meters.
+const TOGETHER: f64 = 1e-6;
+
+/// The longest queue before a passage.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LongestQueue {
+    /// The name of the place or door, `the opening at (x, y)`, or the position of the goal.
+    pub before: String,
+    /// The middle of the passage, meters.
+    #[serde(default)]
+    pub at: [f64; 2],
+    /// The largest number of agents at one time; of a queue with a line, of those who have joined it.
+    pub agents: u32,
+    /// The first time with this number, seconds.
+    pub at_secs: f64,
+    /// Of a queue with a line: those who stood outside of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outside: Option<Outside>,
+}
+
+/// What people wait for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+enum Passage {
+    Opening(u32),
+    Aim(Aim),
+}
+
+/// The longest queue so far before a passage.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Queue {
+    passage: Passage,
+    agents: u32,
+    at_secs: f64,
+}
+
+/// The longest queues so far.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) struct Queues {
+    queues: Vec<Queue>,
+    lines: Lines,
+    /// They follow from the scene.
+    #[serde(skip)]
+    openings: Option<Openings>,
+}
+
+/// A slow agent.
+struct Slow {
+    agent: usize,
+    aim: Aim,
+    /// The openings on its way.
+    ahead: Vec<Crossing>,
+    /// The length of its way, meters.
+    length: f64,
+}
+
+/// The slow agents on ways through a passage, each with its distance, meters.
+struct Waiting {
+    passage: Passage,
+    agents: Vec<(f64, usize)>,
+    /// Those up to the first gap.
+    queue: usize,
+}
+
+impl Queues {
+    /// Observes the queues of a frame with the headways of its agents, by id: once every [`EVERY`] seconds.
+    pub(super) fn observe(&mut self, headways: &[Option<Headway>], simulation: &Simulation) {
+        let openings = self
+            .openings
+            .take()
+            .unwrap_or_else(|| Openings::of(simulation.scene()));
+        let now = simulation.frame().clock.time();
+        let slow = slow(headways, simulation, &openings);
+        let mut waiting = waiting(&slow, simulation);
+        for one in &mut waiting {
+            one.close_up(simulation, &slow);
+        }
+        for one in &waiting {
+            if !one.is_part_of_another(&waiting, &slow, &openings) {
+                self.notice(one.passage, one.queue as u32, now);
+            }
+        }
+        self.openings = Some(openings);
+        let places = simulation.scene().journeys.places.iter();
+        let states = simulation.progress().places.iter().zip(places).zip(0..);
+        for ((state, place), number) in states {
+            if let Kind::Queue(line) = &place.kind {
+                self.notice(Passage::Aim(Aim::Place(number)), state.longest, now);
+                self.lines.observe(simulation, number, line);
+            }
+        }
+    }
+
+    /// The longest queue before each passage, the longest one first.
+    pub(super) fn longest(&self, simulation: &Simulation) -> Vec<LongestQueue> {
+        let openings = self.openings.clone();
+        let openings = openings.unwrap_or_else(|| Openings::of(simulation.scene()));
+        let places = &simulation.scene().journeys.places;
+        let mut queues: Vec<&Queue> = self.queues.iter().collect();
+        queues.sort_by_key(|queue| std::cmp::Reverse(queue.agents)); // stable
+        let longest = queues.into_iter().map(|queue| {
+            let place = match queue.passage {
+                Passage::Opening(k) => openings.door(k),
+                Passage::Aim(Aim::Place(number)) => Some(number),
+                Passage::Aim(_) => None,
+            };
+            let outside = place.and_then(|number| self.lines.outside(number));
+            let place = place.map(|number| &places[usize::from(number)]);
+            let at = match (place, queue.passage) {
+                (Some(place), _) => middle(place),
+                (None, Passage::Opening(k)) => openings.middle(k),
+                (None, Passage::Aim(Aim::Goal(goal) | Aim::Direction(goal))) => goal,
+                (None, Passage::Aim(Aim::Place(_))) => Vector::zeros(),
+            };
+            let [x, y] = [at.x, at.y].map(to_centimeters);
+            LongestQueue {
+                before: match (place, queue.passage) {
+                    (Some(place), _) => place.name.clone(),
+                    (None, Passage::Opening(_)) => format!("the opening at ({x}, {y})"),
+                    (None, _) => format!("({}, {})", at.x, at.y),
+                },
+                at: at.into(),
+                agents: queue.agents,
+                at_secs: queue.at_secs,
+                outside,
+            }
+        });
+        longest.collect()
+    }
+
+    fn notice(&mut self, passage: Passage, agents: u32, at_secs: f64) {
+        if agents < FEWEST {
+            return;
+        }
+        let queue = Queue {
+            passage,
+            agents,
+            at_secs,
+        };
+        let mut queues = self.queues.iter_mut();
+        match queues.find(|queue| queue.passage == passage) {
+            Some(longest) if longest.agents < agents => *longest = queue,
+            Some(_) => {}
+            None => self.queues.push(queue),
+        }
+    }
+}
+
+/// The slow agents that have walked for some time.
+fn slow(headways: &[Option<Headway>], simulation: &Simulation, openings: &Openings) -> Vec<Slow> {
+    let agents = simulation.frame().agents;
+    let mut known = Known::new();
+    let walking = agents.present().filter_map(|agent| {
+        let headway = headways.get(agents.id[agent] as usize)?.as_ref()?;
+        let (aim, length) = headway.way().filter(|_| is_slow(simulation, agent))?;
+        let ahead = openings.ahead(simulation, (agent, aim), &mut known);
+        let (ahead, length) = ahead.unwrap_or((Vec::new(), length));
+        Some(Slow {
+            agent,
+            aim,
+            ahead,
+            length,
+        })
+    });
+    walking.collect()
+}
+
+pub(super) fn is_slow(simulation: &Simulation, agent: usize) -> bool {
+    let frame = simulation.frame();
+    let pace = simulation
+        .scene()
+        .pace(frame.agents, agent, frame.clock.time());
+    frame.agents.velocity[agent].norm() < SLOW * pace
+}
+
+/// The slow agents before each passage, the nearest ones first. Queues with a line are passages of their own.
+fn waiting(slow: &[Slow], simulation: &Simulation) -> Vec<Waiting> {
+    let places = &simulation.scene().journeys.places;
+    let has_line = |aim: Aim| match aim {
+        Aim::Place(number) => matches!(places[usize::from(number)].kind, Kind::Queue(_)),
+        _ => false,
+    };
+    let mut openings: BTreeMap<u32, Vec<(f64, usize)>> = BTreeMap::new();
+    let mut aims: Vec<(Aim, f64, usize)> = Vec::new();
+    for (k, one) in slow.iter().enumerate() {
+        for &(opening, distance) in &one.ahead {
+            openings.entry(opening).or_default().push((distance, k));
+        }
+        aims.extend((!has_line(one.aim)).then_some((one.aim, one.length, k)));
+    }
+    aims.sort_by(|(aim, ..), (other, ..)| aim.order(other)); // stable
+    let openings = openings.into_iter();
+    let openings = openings.map(|(opening, agents)| (Passage::Opening(opening), agents));
+    let aims = aims.chunk_by(|(aim, ..), (other, ..)| aim == other);
+    let aims = aims.map(|agents| {
+        let all = agents.iter().map(|&(_, length, k)| (length, k));
+        (Passage::Aim(agents[0].0), all.collect())
+    });
+    let all = openings.chain(aims).map(|(passage, agents)| Waiting {
+        passage,
+        agents,
+        queue: 0,
+    });
+    all.collect()
+}
+
+impl Waiting {
+    /// Finds the queue: the agents up to the first gap.
+    fn close_up(&mut self, simulation: &Simulation, slow: &[Slow]) {
+        self.agents.sort_by(|(a, _), (b, _)| a.total_cmp(b)); // stable
+        let Some(&(first, front)) = self.agents.first() else {
+            return;
+        };
+        let (agents, scene) = (simulation.frame().agents, simulation.scene());
+        let group = usize::from(agents.group[slow[front].agent]);
+        let start = match (self.passage, &scene.ways) {
+            // Without a floor, no openings before the goal are known.
+            (Passage::Aim(Aim::Goal(_)), None) => first,
+            (Passage::Aim(Aim::Goal(_)), Some(_)) => {
+                scene.groups[group].removal_radius.unwrap_or_default()
+            }
+            _ => 0.0,
+        };
+        let distances = self.agents.iter().map(|&(distance, _)| distance);
+        self.queue = length(distances, start) as usize;
+    }
+
+    /// Whether it is an opening whose queue stands in that of another passage farther along the way: there people wait,
+    /// and this opening is only on the way there. Declared doors have queues of their own.
+    fn is_part_of_another(&self, all: &[Self], slow: &[Slow], openings: &Openings) -> bool {
+        let Passage::Opening(opening) = self.passage else {
+            return false;
+        };
+        let Some(&(distance, front)) = self.agents.first() else {
+            return true;
+        };
+        if openings.door(opening).is_some() {
+            return false;
+        }
+        let front = &slow[front];
+        let behind = front.ahead.iter().filter(|&&(other, away)| {
+            away > distance + TOGETHER || away > distance - TOGETHER && other < opening
+        });
+        let passages = behind.map(|&(other, away)| (Passage::Opening(other), away));
+        let mut passages = passages.chain([(Passage::Aim(front.aim), front.length)]);
+        passages.any(|(passage, away)| {
+            let mut all = all.iter();
+            all.find(|one| one.passage == passage)
+                .is_some_and(|one| one.reach().is_some_and(|reach| away <= reach))
+        })
+    }
+
+    /// How far behind the passage the last one stands, meters; `None` without a queue.
+    fn reach(&self) -> Option<f64> {
+        let last = self.queue.checked_sub(1)?;
+        Some(self.agents[last].0)
+    }
+}
+
+/// Where a place is, meters.
+fn middle(place: &Place) -> Vector {
+    match (&place.kind, place.line()) {
+        (_, Some([a, b])) => 0.5 * (a + b),
+        (Kind::Disk { at, .. }, _) => *at,
+        (Kind::Queue(line), _) => line.path[0],
+        (Kind::Waiting(waiting), _) => {
+            let corners = waiting.area.points();
+            corners.iter().sum::<Vector>() / corners.len() as f64
+        }
+        _ => Vector::zeros(),
+    }
+}
+
+/// The number of agents at these ascending distances, from `start` up to the first gap.
+pub(super) fn length(distances: impl Iterator<Item = f64>, start: f64) -> u32 {
+    let mut before = start;
+    let close = distances.take_while(|&left| {
+        let is_near = left - before <= GAP;
+        before = left;
+        is_near
+    });
+    close.count() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_queue_begins_at_its_place_and_ends_at_the_first_gap() {
+        let queue = |distances: &[f64], start| length(distances.iter().copied(), start);
+        let all = [0.5, 1.0, 4.0, 7.0, 7.0 + GAP, 7.0 + 2.0 * GAP + 0.1, 20.0];
+        assert_eq!(queue(&all, 0.0), 5);
+        // Nobody stands at the place.
+        assert_eq!(queue(&[GAP + 0.1, GAP + 0.2], 0.0), 0);
+        // Before a goal, the nearest agent is the first.
+        assert_eq!(queue(&[8.0, 8.4, 12.0], 8.0), 2);
+        assert_eq!(queue(&[], 0.0), 0);
+    }
+}
