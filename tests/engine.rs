@@ -9,6 +9,7 @@ mod architecture;
 mod blending;
 mod bodies;
 mod calibrated;
+mod closed_doors;
 mod cma_es;
 mod conservation;
 mod containment;

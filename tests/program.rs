@@ -44,6 +44,7 @@ mod recording_views;
 mod reports;
 mod reproduction;
 mod resumed_program;
+mod run_text;
 mod scenario_geometry;
 mod seeing;
 mod stability;

@@ -162,12 +162,17 @@ impl Plan {
         narrow.sort_by_key(order);
         let door = |(name, ends): &(String, [Point; 2])| (name.clone(), true, *ends);
         let mut kept: Vec<Opening> = self.doors.iter().map(door).collect();
-        for ends in narrow {
+        for &ends in &narrow {
             let width = far(ends[0], ends[1]);
             let is_near = |(_, _, other): &Opening| {
                 far(middle(ends), middle(*other)) < width.min(far(other[0], other[1]))
             };
-            if !kept.iter().any(is_near) {
+            // Only the narrowest one at a corner.
+            let is_wider = narrow.iter().any(|other| {
+                let meet = |a: Point| other.iter().any(|&b| far(a, b) < TINY);
+                far(other[0], other[1]) < width - 1e-6 && ends.into_iter().any(meet)
+            });
+            if !is_wider && !kept.iter().any(is_near) {
                 let [x, y] = middle(ends).map(|x| (100.0 * x).round() / 100.0);
                 kept.push((format!("the opening at ({x}, {y})"), false, ends));
             }
@@ -264,11 +269,9 @@ impl Plan {
             let Some(opening) = opening.filter(|&k| !openings[k].1) else {
                 return true;
             };
-            let (distance, front) = all[0];
-            let further = ahead[front].iter().filter(|(other, away)| {
+            let further = ahead[all[0].1].iter().filter(|(other, _)| {
                 let number = openings.iter().position(|(one, ..)| one == other);
-                let is_first = number.is_none_or(|number| number < opening);
-                other != name && (*away > distance + 1e-6 || *away > distance - 1e-6 && is_first)
+                number.is_none_or(|number| number < opening)
             });
             let mut further = further;
             !further.any(|(other, away)| {

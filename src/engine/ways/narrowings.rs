@@ -39,9 +39,9 @@ impl Narrowings {
         Self::at(passages(mesh, widest))
     }
 
-    /// These, such as doors, and after them the passages of a floor up to `widest` meters wide, the narrowest first. Of
-    /// two whose middles are nearer than the width of the narrower one, such as the two sides of a wall with a door,
-    /// only the first counts.
+    /// These, such as doors, and after them the openings of a floor up to `widest` meters wide, the narrowest first: of
+    /// the passages that end at one corner only the narrowest, and of two whose middles are nearer than the width of the
+    /// narrower one, such as the two sides of a wall with a door, only the first.
     #[must_use]
     pub fn and_openings(self, mesh: &Mesh, widest: f64) -> Self {
         let width = |[a, b]: &[Vector; 2]| (b - a).norm();
@@ -56,7 +56,15 @@ impl Narrowings {
             a.total_cmp(&b).then(x.total_cmp(&u)).then(y.total_cmp(&v))
         });
         let mut kept = self.places;
-        for one in found {
+        for &one in &found {
+            // The way from a door into the room behind it is as wide as the room.
+            let ends_there = |end: &Vector| one.iter().any(|own| (own - end).norm() < EQUAL);
+            let mut narrower = found.iter();
+            if narrower
+                .any(|other| width(other) < width(&one) - EQUAL && other.iter().any(ends_there))
+            {
+                continue;
+            }
             let is_near = |other: &[Vector; 2]| {
                 (middle(one) - middle(*other)).norm() < width(&one).min(width(other))
             };

@@ -24,8 +24,6 @@ pub const GAP: f64 = 3.0;
 pub(super) const EVERY: f64 = 1.0;
 /// The fewest agents in a queue.
 const FEWEST: u32 = 2;
-/// Passages at distances that differ by less are at one place, meters.
-const TOGETHER: f64 = 1e-6;
 
 /// The longest queue before a passage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -250,23 +248,22 @@ impl Waiting {
         self.queue = length(distances, start) as usize;
     }
 
-    /// Whether it is an opening whose queue stands in that of another passage farther along the way: there people wait,
-    /// and this opening is only on the way there. Declared doors have queues of their own.
+    /// Whether it is an opening whose queue stands before another passage, too: a place, a door or a narrower opening. Then
+    /// people wait for that one. Declared doors have queues of their own.
     fn is_part_of_another(&self, all: &[Self], slow: &[Slow], openings: &Openings) -> bool {
         let Passage::Opening(opening) = self.passage else {
             return false;
         };
-        let Some(&(distance, front)) = self.agents.first() else {
+        let Some(&(_, front)) = self.agents.first() else {
             return true;
         };
         if openings.door(opening).is_some() {
             return false;
         }
         let front = &slow[front];
-        let behind = front.ahead.iter().filter(|&&(other, away)| {
-            away > distance + TOGETHER || away > distance - TOGETHER && other < opening
-        });
-        let passages = behind.map(|&(other, away)| (Passage::Opening(other), away));
+        // Doors come first, then the narrower ones.
+        let others = front.ahead.iter().filter(|&&(other, _)| other < opening);
+        let passages = others.map(|&(other, away)| (Passage::Opening(other), away));
         let mut passages = passages.chain([(Passage::Aim(front.aim), front.length)]);
         passages.any(|(passage, away)| {
             let mut all = all.iter();
