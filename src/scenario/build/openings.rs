@@ -155,6 +155,13 @@ impl Opening {
         let ring = self.ring(self.before);
         let mut outline: Vec<Vector> = ring.into_iter().map(Vector::from).collect();
         let [along, out] = self.directions;
+        // The floor begins to widen where it begins, before the edge.
+        let end = self.depth.min(WIDE_AT);
+        let part = (self.before + OVERLAP) / (end + OVERLAP);
+        let aside = self.aside(end) * part - self.aside(self.before);
+        if let [first, .., last] = &mut outline[..] {
+            (*first, *last) = (*first + along * aside, *last - along * aside);
+        }
         if along.perp(&out) < 0.0 {
             outline.reverse();
         }
