@@ -77,6 +77,12 @@ fn crowds_with_several_ways_are_told_how_they_choose() {
     assert_eq!(notes(&exits), [""; 0], "they are few");
     exits["crowds"][0]["number"] = json!(120);
     assert!(note(&exits).contains("take the shortest way"));
+    // Journeys that choose by time say how their agents choose.
+    exits["obstacles"] = crowded["obstacles"].clone();
+    assert!(note(&exits).contains("take the shortest way"));
+    exits["journeys"] = json!([{"name": "j", "stages": [{"quickest": ["east", "west"]}]}]);
+    exits["crowds"][0]["journey"] = json!("j");
+    assert_eq!(notes(&exits), [""; 0]);
 }
 
 #[test]

@@ -62,6 +62,7 @@ mod periodic_scenarios;
 mod precision;
 mod push;
 mod queues;
+mod reached;
 mod reference_states;
 mod resumed;
 mod round;

@@ -160,13 +160,12 @@ fn a_breakdown_shows_the_ways_that_an_agent_compares() {
                 .flow_per_sec
                 .map_or(0.0, |flow| f64::from(way.ahead) / flow);
             let walking = way.length / 1.4;
-            assert!(
-                (way.through_secs - walking.max(waiting)).abs() < 1e-9,
-                "{way:?}"
-            );
-            assert!(way.total_secs >= way.through_secs, "{way:?}");
+            let through = way.through_secs.unwrap();
+            assert!((through - walking.max(waiting)).abs() < 1e-9, "{way:?}");
+            assert!(way.total_secs.unwrap() >= through, "{way:?}");
         }
-        let times: Vec<f64> = choice.ways.iter().map(|way| way.total_secs).collect();
+        let times = choice.ways.iter().map(|way| way.total_secs.unwrap());
+        let times: Vec<f64> = times.collect();
         assert!(times.is_sorted(), "{choice:?}");
         assert!(breakdown.to_string().contains("way by time: "));
     }
@@ -337,6 +336,113 @@ fn people_walk_around_closed_doors_and_wait_where_no_other_way_leads() {
     assert!(agents.position.iter().all(|p| p.x < 10.1));
     go_on(&mut simulation, 60.0);
     assert_eq!(simulation.outcome().arrivals.len(), 12);
+}
+
+#[test]
+fn a_breakdown_says_that_a_way_is_closed_and_until_when() {
+    let text = |closed: Value, at: f64| {
+        let mut document = with_door(&json!({"closed_secs": closed}));
+        document["walkable_area"].as_array_mut().unwrap().pop();
+        document["route_choice"] = json!("quickest");
+        let mut simulation = after(&document, &[], at);
+        simulation.evaluate().unwrap();
+        Breakdown::of(&simulation, 0).unwrap().to_string()
+    };
+    let closed = text(json!([[0, 20], [30, 40]]), 5.0);
+    let ways: Vec<&str> = closed
+        .lines()
+        .filter(|line| line.contains("door `south`"))
+        .collect();
+    assert!(
+        ways[0].trim().starts_with("closed until 20.00 s: "),
+        "{closed}"
+    );
+    assert!(!ways[0].contains("through after"), "{closed}");
+    assert!(
+        closed.contains("bound for it, the way is closed until 20.00 s"),
+        "{closed}"
+    );
+    for time in [" 36", "walking"] {
+        assert!(!closed.contains(time), "{closed}");
+    }
+    let ever = text(json!([[0, 20], [20, 1000]]), 5.0);
+    assert!(ever.contains("the way is closed until 1000.00 s"), "{ever}");
+    let open = text(json!([[10, 20]]), 5.0);
+    assert!(
+        !open.contains("closed") && open.contains("; walking "),
+        "{open}"
+    );
+}
+
+/// A corridor of 20 × 3 m with a narrow place at x = 10 to 10.2 m, and a door with this line.
+fn corridor(line: &Value) -> Value {
+    json!({
+        "profile": "steer+sph", "walkable_area": [[[[0, 0], [20, 0], [20, 3], [0, 3]]]],
+        "obstacles": [[[10, 0], [10.2, 0], [10.2, 0.5], [10, 0.5]],
+                      [[10, 2.5], [10.2, 2.5], [10.2, 3], [10, 3]]],
+        "doors": [{"name": "d", "line": line, "closed_secs": [[0, 15]]}],
+        "exits": [{"name": "e", "line": [[20, 1], [20, 2]]}],
+        "agents": [{"position": [6, 1.5]}],
+    })
+}
+
+#[test]
+fn a_door_from_wall_to_wall_is_one_wherever_it_lies_in_the_opening() {
+    let lines = [
+        json!([[10, 0.5], [10, 2.5]]),
+        json!([[10.2, 2.5], [10.2, 0.5]]),
+        json!([[10, 0.5], [10.2, 2.5]]),
+        json!([[10.1, 0.5], [10.1, 2.5]]),
+        json!([[10, 0], [10, 3]]),
+        json!([[10, 0.3], [10, 2.7]]),
+        json!([[10, -0.1], [10, 3.1]]),
+        json!([[10.1, 0.2], [10.1, 2.8]]),
+        json!([[10.1, 0.54], [10.1, 2.46]]),
+        json!([[9.97, 0.5], [9.97, 2.5]]),
+        json!([[9.9, 0], [9.9, 3]]),
+    ];
+    for line in &lines {
+        let mut simulation = start(&corridor(line), &[]);
+        go_on(&mut simulation, 14.9);
+        let p = simulation.frame().agents.position[0];
+        assert!(p.x > 9.0 && p.x < 10.21, "{line}: {p}");
+        go_on(&mut simulation, 40.0);
+        assert_eq!(simulation.outcome().arrivals.len(), 1, "{line}");
+        let door = simulation.progress().places.last().unwrap();
+        assert_eq!(door.passed, 1, "{line}");
+    }
+    let free = scenario(&corridor(&json!([[10.1, 0.5], [10.1, 2.3]])), &[]).unwrap_err();
+    assert!(
+        free.contains("`d`: it ends at (10.1, 2.3), not at a wall"),
+        "{free}"
+    );
+}
+
+#[test]
+fn two_doors_on_one_line_are_named_and_two_side_by_side_are_accepted() {
+    let mut two = corridor(&json!([[9, 0], [9, 3]]));
+    let mut other = two["doors"][0].clone();
+    other["name"] = json!("valve");
+    two["doors"].as_array_mut().unwrap().push(other);
+    for line in [
+        json!([[9, 0], [9, 3]]),
+        json!([[9, 3], [9, 0]]),
+        json!([[9, 1], [9, 3]]),
+    ] {
+        two["doors"][1]["line"] = line;
+        let error = scenario(&two, &[]).unwrap_err();
+        let said = "doors[1].line: `valve` lies on the line of `d`: draw one door";
+        assert!(error.contains(said), "{error}");
+    }
+    two["doors"][0]["line"] = json!([[9, 0], [9, 1.5]]);
+    two["doors"][1]["line"] = json!([[9, 1.5], [9, 3]]);
+    two["doors"][0]["closed_secs"] = json!([[0, 100]]);
+    two["doors"][1]["closed_secs"] = json!([]);
+    let simulation = after(&two, &[], 40.0);
+    assert_eq!(simulation.outcome().arrivals.len(), 1);
+    let places = &simulation.progress().places;
+    let passed: Vec<u32> = places.iter().map(|place| place.passed).collect();
+    assert_eq!(passed, [1, 0, 1]);
 }
 
 #[test]

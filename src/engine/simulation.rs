@@ -3,6 +3,7 @@
 mod behavior;
 mod bound;
 mod choice;
+mod closed;
 mod digest;
 mod doors;
 mod entrances;
@@ -27,6 +28,7 @@ mod trips;
 
 pub use bound::Stream;
 pub use choice::{Decision, Expected, Prospect, Reason};
+pub use closed::Closed;
 pub use entrances::Backlog;
 pub use goals::{Absent, GoalError};
 pub use limited::{Limited, SPOT_RADIUS};

@@ -47,7 +47,7 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
         true => (Arc::clone(ways), to),
         // No agent goes there, so the scene has no path map to it.
         false => {
-            let goals: Vec<_> = place.map(|k| places[k].goals()).into_iter().collect();
+            let goals: Vec<_> = place.map(|k| places[k].goals.clone()).into_iter().collect();
             let extra = Ways::new(ways.floor.clone(), &goals, point.into_iter().collect());
             let extra = extra.map_err(|error| refused(format!("{error}; give a point that is")))?;
             let to = place.map_or(to, |_| Destination::Place(0));

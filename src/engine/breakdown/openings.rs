@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::engine::simulation::{Outlook, Simulation};
+use crate::engine::simulation::{Closed, Outlook, Simulation};
 
 /// The choice of an agent between ways.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -28,10 +28,13 @@ pub struct WaySeen {
     pub ahead: u32,
     /// Its flow, P/s; `None` at the goal.
     pub flow_per_sec: Option<f64>,
-    /// The time until the agent has passed it, seconds.
-    pub through_secs: f64,
-    /// The time to the goal, seconds.
-    pub total_secs: f64,
+    /// The time until the agent has passed it, seconds; `None` if the way is closed.
+    pub through_secs: Option<f64>,
+    /// The time to the goal, seconds; `None` if the way is closed.
+    pub total_secs: Option<f64>,
+    /// Until when the way is closed, by a door here or beyond.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closed: Option<Closed>,
     /// Whether the shortest way leads there.
     pub shortest: bool,
     /// Whether the agent takes it.
@@ -68,15 +71,21 @@ impl WayChoice {
         let is_quickest = outlooks
             .first()
             .is_some_and(|best| best.step == plan.toward);
-        let ways = outlooks.iter().map(|outlook| WaySeen {
-            through: name(outlook),
-            length: outlook.length,
-            ahead: outlook.ahead,
-            flow_per_sec: Some(outlook.flow).filter(|flow| flow.is_finite()),
-            through_secs: outlook.until_through,
-            total_secs: outlook.total,
-            shortest: outlook.step == comparison.shortest,
-            taken: outlook.step == plan.toward,
+        let ways = outlooks.iter().map(|outlook| {
+            let closed = outlook
+                .step
+                .and_then(|step| simulation.closed_way(i, plan.goal, Some(step)));
+            WaySeen {
+                through: name(outlook),
+                length: outlook.length,
+                ahead: outlook.ahead,
+                flow_per_sec: Some(outlook.flow).filter(|flow| flow.is_finite()),
+                through_secs: Some(outlook.until_through).filter(|_| closed.is_none()),
+                total_secs: Some(outlook.total).filter(|_| closed.is_none()),
+                closed,
+                shortest: outlook.step == comparison.shortest,
+                taken: outlook.step == plan.toward,
+            }
         });
         Some(Self {
             reason: match (outlooks.len(), is_quickest) {

@@ -95,13 +95,20 @@ impl Breakdown {
             let flow = way.flow_per_sec.map_or(String::new(), |flow| {
                 format!(", {} ahead at {flow:.2} P/s", way.ahead)
             });
+            let total = way.total_secs.map(|total| format!("{total:6.2} s"));
+            let through = way.through_secs;
+            let through = through.map(|secs| format!(", through after {secs:.2} s"));
+            let closed = || {
+                way.closed
+                    .map_or(String::new(), |closed| closed.to_string())
+            };
             writeln!(
                 f,
-                "    {:6.2} s: {:.2} m to {}{flow}, through after {:.2} s{}{}",
-                way.total_secs,
+                "    {}: {:.2} m to {}{flow}{}{}{}",
+                total.unwrap_or_else(closed),
                 way.length,
                 way.through,
-                way.through_secs,
+                through.unwrap_or_default(),
                 if way.shortest { "; the shortest" } else { "" },
                 if way.taken { "; taken" } else { "" },
             )?;
@@ -239,6 +246,9 @@ impl Display for Alternative {
         write!(f, ", {} agent(s) bound for it", self.bound)?;
         if let Some(weight) = self.weight {
             write!(f, ", weight {weight}")?;
+        }
+        if let Some(closed) = &self.way_closed {
+            write!(f, ", the way is {closed}")?;
         }
         let Some(times) = &self.expected else {
             return Ok(());

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::engine::journeys::{Status, Trip};
-use crate::engine::simulation::{Decision, Expected, Prospect, Reason, Simulation};
+use crate::engine::simulation::{Closed, Decision, Expected, Prospect, Reason, Simulation};
 
 /// The place that an agent on a journey visits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -84,9 +84,12 @@ pub struct Alternative {
     /// Its weight, for a stage with shares.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub weight: Option<f64>,
-    /// The expected times, for `quickest`.
+    /// The expected times, for `quickest`; `None` if the way there is closed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected: Option<Expected>,
+    /// Until when doors close the way there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub way_closed: Option<Closed>,
 }
 
 impl Visit {
@@ -103,7 +106,7 @@ impl Visit {
             place: name(simulation, trip.place),
             doing: doing(simulation, trip),
             waited_secs: trip.waited,
-            why: decision.map(|decision| Why::of(simulation, trip, &decision)),
+            why: decision.map(|decision| Why::of(simulation, i, (trip, &decision))),
         })
     }
 }
@@ -147,7 +150,7 @@ fn doing(simulation: &Simulation, trip: &Trip) -> Doing {
 }
 
 impl Why {
-    fn of(simulation: &Simulation, trip: &Trip, decision: &Decision) -> Self {
+    fn of(simulation: &Simulation, i: usize, (trip, decision): (&Trip, &Decision)) -> Self {
         let clock = simulation.frame().clock;
         let again = Some(trip.chooses_at).filter(|&frame| frame < u64::MAX);
         let prospects = decision.prospects.iter();
@@ -156,7 +159,7 @@ impl Why {
             reason: in_words(decision.reason),
             looks_again_secs: again.map(|frame| clock.time_at(frame)),
             alternatives: prospects
-                .map(|prospect| Alternative::of(simulation, prospect))
+                .map(|prospect| Alternative::of(simulation, i, prospect))
                 .collect(),
         }
     }
@@ -175,14 +178,16 @@ fn in_words(reason: Reason) -> &'static str {
 }
 
 impl Alternative {
-    fn of(simulation: &Simulation, prospect: &Prospect) -> Self {
+    fn of(simulation: &Simulation, i: usize, prospect: &Prospect) -> Self {
+        let way_closed = simulation.closed_way(i, prospect.place, None);
         Self {
             place: name(simulation, prospect.place),
             open: prospect.open,
             length: Some(prospect.length).filter(|length| length.is_finite()),
             bound: prospect.bound,
             weight: prospect.weight,
-            expected: prospect.expected,
+            expected: prospect.expected.filter(|_| way_closed.is_none()),
+            way_closed,
         }
     }
 }

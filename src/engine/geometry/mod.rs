@@ -6,6 +6,7 @@
 //! §4.3), in closed form.
 
 mod assemble;
+mod clearance;
 mod corners;
 mod hidden_region;
 mod polygon;
@@ -16,6 +17,7 @@ mod wall;
 mod walls;
 
 pub use assemble::assemble;
+pub use clearance::{Clear, LineAmongWalls};
 pub use hidden_region::HiddenRegion;
 pub use polygon::{Area, Polygon, PolygonError};
 pub use ring::Ring;

@@ -12,6 +12,8 @@ pub struct Place {
     pub name: String,
     /// Its kind.
     pub kind: Kind,
+    /// The points and lines that agents walk to, for a path map: those parts of it that they can reach.
+    pub goals: Vec<Goal>,
 }
 
 /// The kind of a place.
@@ -99,9 +101,9 @@ impl Kind {
 }
 
 impl Place {
-    /// The points and lines that agents walk to, for a path map.
-    pub fn goals(&self) -> Vec<Goal> {
-        match &self.kind {
+    /// A place with all its parts.
+    pub fn new(name: String, kind: Kind) -> Self {
+        let goals = match &kind {
             Kind::Exit(Exit { line, .. }) | Kind::Line(line) | Kind::Door(Door { line, .. }) => {
                 vec![Goal::Line(*line)]
             }
@@ -111,22 +113,21 @@ impl Place {
                 sides.map(|(a, b)| Goal::Line([a, b])).collect()
             }
             Kind::Queue(queue) => queue.path.iter().map(|&p| Goal::Point(p)).collect(),
-        }
+        };
+        Self { name, kind, goals }
     }
 
-    /// The point of the place nearest to `p`, meters.
+    /// The point of the place nearest to `p` that agents walk to, meters.
     pub fn nearest_point(&self, p: Vector) -> Vector {
         match &self.kind {
-            Kind::Exit(Exit { line: [a, b], .. })
-            | Kind::Line([a, b])
-            | Kind::Door(Door { line: [a, b], .. }) => nearest_on(p, *a, *b),
-            Kind::Disk { at, .. } => *at,
             Kind::Waiting(waiting) if waiting.area.contains(p) => p,
-            Kind::Waiting(waiting) => {
-                let sides = sides(waiting.area.points());
-                nearest(sides.map(|(a, b)| nearest_on(p, a, b)), p)
+            _ => {
+                let points = self.goals.iter().map(|goal| match *goal {
+                    Goal::Point(point) => point,
+                    Goal::Line([a, b]) => nearest_on(p, a, b),
+                });
+                nearest(points, p)
             }
-            Kind::Queue(queue) => nearest(queue.path.iter().copied(), p),
         }
     }
 

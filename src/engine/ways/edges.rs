@@ -60,12 +60,30 @@ impl Edges {
         self.walls.iter().copied().chain(closed).collect()
     }
 
-    /// Closes lines, which may end in walls or beyond them.
+    /// Closes lines, which may end in walls or beyond them, and lead along walls.
     pub fn draw(&mut self, lines: &[[Vector; 2]]) {
+        let mut drawn = Vec::new();
         for line in lines {
-            let first = self.points.len();
-            self.points.extend(line);
-            self.closed.insert([first, first + 1]);
+            let ends = line.map(|end| {
+                let here = |p: &Vector| (p - end).norm() <= TOUCHING;
+                self.points.iter().position(here).unwrap_or_else(|| {
+                    self.points.push(end);
+                    self.points.len() - 1
+                })
+            });
+            let edge = Self::sorted(ends);
+            self.closed.insert(edge);
+            drawn.push(edge);
+        }
+        // The triangulation sees no crossing where a line leads through a corner.
+        let leads_through = |edge: &Edge| {
+            let [a, b] = edge.map(|end| self.points[end]);
+            let mut others = self.points.iter().enumerate();
+            others.any(|(k, &p)| !edge.contains(&k) && to_segment(p, a, b) <= TOUCHING)
+        };
+        drawn.retain(leads_through);
+        if !drawn.is_empty() {
+            self.split(&drawn);
         }
     }
 

@@ -213,10 +213,16 @@ fn free_parts(floor: &Floor, [a, b]: [Vector; 2]) -> Vec<[Vector; 2]> {
             _ => joined.push(piece),
         }
     }
+    let is_long = |ends: &[f64; 2]| (ends[1] - ends[0]) * along.norm() > SHORTEST;
+    if joined.iter().any(is_long) {
+        joined.retain(is_long);
+    }
     let ends = joined.into_iter();
     ends.map(|ends| ends.map(|part| a + along * part)).collect()
 }
 
+/// Shorter parts of a line, such as one that reaches over a wall by rounding, are no goals, meters.
+const SHORTEST: f64 = 1e-6;
 /// Smaller gaps between the parts of a line come from rounding, as a fraction of its length.
 const GAP: f64 = 1e-9;
 

@@ -45,6 +45,7 @@ pub use narrowings::{Narrowing, Narrowings};
 pub use opening::{Opening, Step};
 pub use passage::{Passage, Passages};
 pub use plan::{Detour, Plan};
+pub use reach::Regions;
 pub use rooms::{Rooms, WIDEST};
 pub use route::{Destination, Route, Walker, Ways};
 pub use steer::around;

@@ -1,5 +1,8 @@
 //! Which destinations can be reached through passages that are wide enough, and how long the ways there are.
 
+use std::collections::BTreeSet;
+
+use super::cuts::parts;
 use super::map::{Next, Way};
 use super::route::{Destination, Ways};
 use crate::engine::math::Vector;
@@ -51,5 +54,60 @@ impl Way {
     /// Whether the way crosses no closed passage.
     fn is_wide(&self) -> bool {
         !matches!(self.next, Next::Out(_))
+    }
+}
+
+/// The regions of a floor: from everywhere in one, ways lead to the same places.
+pub struct Regions<'a> {
+    ways: &'a Ways,
+    /// The region of each triangle of a floor that is not divided into rooms.
+    of_triangle: Vec<u32>,
+}
+
+impl<'a> Regions<'a> {
+    /// The regions of the floor of `ways`: its rooms, or what is connected without closed passages.
+    pub fn of(ways: &'a Ways) -> Self {
+        let of_triangle = match ways.rooms {
+            Some(_) => Vec::new(),
+            None => parts(&ways.floor.mesh),
+        };
+        Self { ways, of_triangle }
+    }
+
+    /// The region of a point; `None` off the floor.
+    pub fn at(&self, p: Vector) -> Option<u32> {
+        match &self.ways.rooms {
+            Some(rooms) => Some(rooms.room(rooms.floor.locate(p)?)),
+            None => Some(self.of_triangle[self.ways.floor.locate(p)? as usize]),
+        }
+    }
+
+    /// The region of a point, or the one nearest to a point in a wall.
+    pub fn nearest(&self, p: Vector) -> Option<u32> {
+        match &self.ways.rooms {
+            Some(rooms) => Some(rooms.room(rooms.floor.locate_or_nearest(None, p)?)),
+            None => {
+                let here = self.ways.floor.locate_or_nearest(None, p)?;
+                Some(self.of_triangle[here as usize])
+            }
+        }
+    }
+
+    /// The regions to which ways lead from one, itself among them.
+    pub fn reached_from(&self, region: u32) -> BTreeSet<u32> {
+        let mut reached = BTreeSet::from([region]);
+        let mut waiting = vec![region];
+        while let (Some(rooms), Some(region)) = (&self.ways.rooms, waiting.pop()) {
+            let steps = rooms.steps_out(region).iter();
+            let beyond = steps.map(|&step| rooms.target(step));
+            waiting.extend(beyond.filter(|&region| reached.insert(region)));
+        }
+        reached
+    }
+
+    /// Whether a way there is no way back, because of one-way doors.
+    pub fn has_one_way(&self) -> bool {
+        let mut rooms = self.ways.rooms.iter();
+        rooms.any(|rooms| rooms.has_one_way())
     }
 }

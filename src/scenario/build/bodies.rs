@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use crate::engine::agents::RADIUS_RANGE;
-use crate::engine::journeys::{Choice, JourneyStage, Kind, Place};
+use crate::engine::journeys::{Choice, Exit, JourneyStage, Kind, Place};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::profile::Blend;
 use crate::engine::scene::Scene;
 use crate::engine::ways::{Destination, Floor, Goal, Passage, Passages};
 use crate::scenario::build::entrances::NEARLY_ALL;
 use crate::scenario::build::origin::{Member, Origins};
+use crate::scenario::build::reach::Stops;
 use crate::scenario::build::ways::{Prepared, To};
 use crate::scenario::error::Problem;
 use crate::scenario::error::quote::{shown, to_centimeters};
@@ -109,7 +110,14 @@ struct Leg {
 impl Prepared<'_> {
     /// Checks that the widest body of each group passes all passages on the widest of its ways. Adds notes on those
     /// that it passes with turned shoulders only, or in which it can stick.
-    pub fn check_bodies(&self, floor: &Floor, notes: &mut Vec<String>) -> Result<(), Problem> {
+    ///
+    /// `stops` are the points where people go on to the next stage.
+    pub fn check_bodies(
+        &self,
+        floor: &Floor,
+        stops: &Stops,
+        notes: &mut Vec<String>,
+    ) -> Result<(), Problem> {
         let most = self.widest.iter().map(|widest| widest.width);
         let most = most.fold(0.0, f64::max);
         let wider = match self.width < most {
@@ -120,7 +128,7 @@ impl Prepared<'_> {
         if !floor.has_closed() {
             return Ok(());
         }
-        for (widest, leg) in self.widest.iter().zip(self.narrowest_legs(floor)) {
+        for (widest, leg) in self.widest.iter().zip(self.narrowest_legs(floor, stops)) {
             let Some(leg) = leg.filter(|leg| leg.passage.width < widest.width) else {
                 continue;
             };
@@ -159,7 +167,7 @@ impl Prepared<'_> {
     }
 
     /// For each of the widest bodies, the leg of its ways with the narrowest passage.
-    fn narrowest_legs(&self, floor: &Floor) -> Vec<Option<Leg>> {
+    fn narrowest_legs(&self, floor: &Floor, stops: &Stops) -> Vec<Option<Leg>> {
         let mut maps = Maps::new(floor, self.places);
         let key = |member: Member| (member.group, self.origins.single(member));
         let numbers = self.widest.iter().enumerate();
@@ -185,10 +193,12 @@ impl Prepared<'_> {
         }
         for (number, journey) in journeys {
             let stages = &self.scene.journeys.journeys[usize::from(journey)].stages;
-            for pair in stages.windows(2) {
+            for (k, pair) in stages.windows(2).enumerate() {
                 for &place in &pair[0].places {
-                    let from = self.places[usize::from(place)].nearest_point(Vector::zeros());
-                    narrower(&mut narrowest[number], maps.leg_to_stage(from, &pair[1]));
+                    let from = stops.get(&(journey, k, place)).into_iter().flatten();
+                    let legs = from.filter_map(|&from| maps.leg_to_stage(from, &pair[1]));
+                    let widest = legs.max_by(|a, b| a.passage.width.total_cmp(&b.passage.width));
+                    narrower(&mut narrowest[number], widest);
                 }
             }
         }
@@ -263,19 +273,19 @@ impl<'a> Maps<'a> {
 /// Points that agents must reach to have reached a place, all of which stand for the same: behind an exit on both
 /// sides.
 fn sides(place: &Place) -> Vec<Vec<Vector>> {
-    if let Kind::Exit(exit) = &place.kind {
-        let [a, b] = exit.line;
-        let beside = perpendicular(direction(b - a)) * BESIDE;
-        return [beside, -beside]
-            .map(|beside| points([a, b]).map(|p| p + beside).collect())
-            .to_vec();
-    }
-    let goals = place.goals().into_iter();
-    let goals = goals.flat_map(|goal| match goal {
+    let goals = place.goals.iter();
+    let goals = goals.flat_map(|goal| match *goal {
         Goal::Point(p) => vec![p],
         Goal::Line(ends) => points(ends).collect(),
     });
-    vec![goals.collect()]
+    let goals: Vec<Vector> = goals.collect();
+    let Kind::Exit(Exit { line: [a, b], .. }) = place.kind else {
+        return vec![goals];
+    };
+    let beside = perpendicular(direction(b - a)) * BESIDE;
+    [beside, -beside]
+        .map(|beside| goals.iter().map(|p| p + beside).collect())
+        .to_vec()
 }
 
 /// Points of a line at equal distances, without its ends.

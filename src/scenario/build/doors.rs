@@ -1,9 +1,11 @@
 //! Checks that people can pass the lines of exits, and notes on lines of which much lies off the floor.
 
-use crate::engine::geometry::Ring;
+use std::f64::consts::TAU;
+
+use crate::engine::geometry::{Ring, Walls};
 use crate::engine::journeys::{Kind, Place};
 use crate::engine::math::{Vector, direction, perpendicular};
-use crate::engine::ways::Floor;
+use crate::engine::ways::{Floor, nearest_on};
 use crate::scenario::build::places::SHORTEST_LINE;
 use crate::scenario::error::Problem;
 use crate::scenario::error::quote::{shown, to_centimeters};
@@ -19,14 +21,19 @@ const BESIDE: f64 = 0.1;
 const NEAR: f64 = 0.02;
 /// A note says how much of a line is off the floor if it is more than this part.
 const MUCH: f64 = 0.1;
-/// A door ends at a wall that is at most this many steps away.
+/// A door ends at a wall that is at most this many steps away, in one of these many directions.
 const AT_WALL: u32 = 5;
+const DIRECTIONS: u32 = 16;
+/// Doors that are so near to each other, meters, over so many meters, are on one line.
+const ON_LINE: f64 = 0.02;
+const OVERLAP: f64 = 0.1;
 /// The number of bisections that find the end of the floor between two points.
 const HALVINGS: u32 = 20;
 
 /// Checks that each exit and each door has a part on the floor that is wide enough for a person, and that doors end
 /// at walls.
 pub fn check(places: &[Place], floor: &Floor) -> Result<(), Problem> {
+    check_apart(places)?;
     let [mut exits, mut doors] = [0, 0];
     for place in places {
         let (list, ends, count) = match &place.kind {
@@ -38,7 +45,8 @@ pub fn check(places: &[Place], floor: &Floor) -> Result<(), Problem> {
         *count += 1;
         let line = Line::new(floor, ends);
         if line.is_passable() {
-            match line.open_end().filter(|_| list == "doors") {
+            let others = places.iter().filter(|other| other.name != place.name);
+            match line.open_end(others).filter(|_| list == "doors") {
                 None => continue,
                 Some([x, y]) => {
                     let name = shown(&place.name);
@@ -66,6 +74,53 @@ pub fn check(places: &[Place], floor: &Floor) -> Result<(), Problem> {
         return Err(Problem::new(format!("{list}[{k}].line"), reason));
     }
     Ok(())
+}
+
+/// Refuses two doors on one line.
+fn check_apart(places: &[Place]) -> Result<(), Problem> {
+    let doors = places.iter().filter(|place| is_door(place));
+    let doors: Vec<(&Place, [Vector; 2])> = doors
+        .filter_map(|door| Some((door, door.line()?)))
+        .collect();
+    for (k, &(door, [a, b])) in doors.iter().enumerate() {
+        let (along, length) = (direction(b - a), (b - a).norm());
+        let is_on = |&&(_, ends): &&(&Place, [Vector; 2])| {
+            let near = ends
+                .iter()
+                .all(|end| along.perp(&(end - a)).abs() <= ON_LINE);
+            let [from, to] = ends.map(|end| along.dot(&(end - a)));
+            near && from.max(to).min(length) - from.min(to).max(0.0) > OVERLAP
+        };
+        if let Some((other, _)) = doors[..k].iter().find(is_on) {
+            let reason = format!(
+                "`{}` lies on the line of `{}`: draw one door, with `one_way` and `closed_secs`, or move one of the two",
+                shown(&door.name),
+                shown(&other.name)
+            );
+            return Err(Problem::new(format!("doors[{k}].line"), reason));
+        }
+    }
+    Ok(())
+}
+
+fn is_door(place: &Place) -> bool {
+    matches!(place.kind, Kind::Door(_))
+}
+
+/// The line of a door up to the walls at which it ends.
+pub fn up_to_walls([a, b]: [Vector; 2], walls: &Walls) -> [Vector; 2] {
+    let along = direction(b - a);
+    [(a, -along), (b, along)].map(|(end, away)| {
+        if walls.obstacle_at(end + away * STEP).is_some() {
+            return end;
+        }
+        let mut near = Vec::new();
+        walls.near(end, f64::from(AT_WALL + 1) * STEP, &mut near);
+        let points = near.iter().map(|&k| walls.wall(k).nearest_point(end).point);
+        let distance = |p: &Vector| (p - end).norm();
+        let nearest = points.min_by(|p, q| distance(p).total_cmp(&distance(q)));
+        nearest.unwrap_or(end)
+    })
 }
 
 /// Notes on exits of `places` of whose lines much lies in obstacles or outside of the walkable area as it is drawn,
@@ -127,17 +182,25 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// An end of it that lies on the floor and at no wall, meters, rounded to centimeters.
-    fn open_end(&self) -> Option<[f64; 2]> {
+    /// An end of it that lies on the floor, at no wall and at no other door, meters, rounded to centimeters.
+    fn open_end<'p>(&self, others: impl Iterator<Item = &'p Place> + Clone) -> Option<[f64; 2]> {
         let along = direction(self.step);
-        let ends = [(0.0, -along), (f64::from(self.steps), along)];
-        let is_open = |&(end, away): &(f64, Vector)| {
-            (0..=AT_WALL).all(|k| {
-                let p = self.at(end) + away * (f64::from(k) * STEP);
-                self.floor.locate(p).is_some()
-            })
+        let reach = f64::from(AT_WALL) * STEP;
+        let is_open = |&end: &f64| {
+            let end = self.at(end);
+            let mut doors = others.clone().filter(|other| is_door(other));
+            let is_at_door = doors.any(|door| {
+                let line = door.line();
+                line.is_some_and(|[a, b]| (nearest_on(end, a, b) - end).norm() <= reach)
+            });
+            let mut around = (0..AT_WALL * DIRECTIONS).map(|k| {
+                let turn = TAU * f64::from(k % DIRECTIONS) / f64::from(DIRECTIONS);
+                let way = along * turn.cos() + perpendicular(along) * turn.sin();
+                end + way * (f64::from(k / DIRECTIONS + 1) * STEP)
+            });
+            !is_at_door && around.all(|p| self.floor.locate(p).is_some())
         };
-        let (end, _) = ends.into_iter().find(is_open)?;
+        let end = [0.0, f64::from(self.steps)].into_iter().find(is_open)?;
         let p = self.at(end);
         Some([p.x, p.y].map(to_centimeters))
     }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use crate::engine::entrance::Entrance;
 use crate::engine::geometry::Walls;
-use crate::engine::journeys::{Change, ChangeKind, Kind, Place};
+use crate::engine::journeys::{Change, ChangeKind, Choice, Kind, Place};
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Group, Scene};
 use crate::engine::ways::nearest_on;
@@ -54,8 +54,8 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
         .collect()
 }
 
-/// A note on crowds on a floor plan with several ways, whose agents take the shortest one because the file does not say
-/// how they choose.
+/// A note on crowds on a floor plan with several ways, whose agents take the shortest one because neither the file nor
+/// a journey says how they choose.
 fn crowded(keys: &File, scene: &Scene, entering: u64) -> Option<String> {
     let is_open = keys.walkable_area.is_some() && keys.route_choice.is_none();
     let rings = scene.walls.obstacles().iter().flat_map(|one| one.rings());
@@ -65,7 +65,14 @@ fn crowded(keys: &File, scene: &Scene, entering: u64) -> Option<String> {
             .map(|k| &scene.journeys.journeys[usize::from(k)]);
         to.is_some_and(|to| to.name == TO_EXIT[0] && to.stages[0].places.len() > 1)
     });
-    let has_choice = scene.ways.is_some() && (rings.count() > 1 || exits);
+    let looks = scene.groups.iter().any(|group| {
+        let journey = group
+            .journey
+            .map(|k| &scene.journeys.journeys[usize::from(k)]);
+        let mut stages = journey.into_iter().flat_map(|journey| &journey.stages);
+        stages.any(|stage| stage.choice == Choice::Quickest)
+    });
+    let has_choice = !looks && scene.ways.is_some() && (rings.count() > 1 || exits);
     (is_open && has_choice && entering >= CROWD).then(|| {
         "all agents take the shortest way, however many wait there; with `route_choice` `quickest` they take the way \
          of the least time (`shortest` in the file hides this note)"

@@ -123,10 +123,8 @@ impl Found<'_> {
             let reason = format!("there are two places named `{}`; rename one", shown(name));
             return Err(Problem::new(format!("{place}.name"), reason));
         }
-        self.journeys.places.push(Place {
-            name: name.to_owned(),
-            kind: kind.under(&place)?,
-        });
+        let kind = kind.under(&place)?;
+        self.journeys.places.push(Place::new(name.to_owned(), kind));
         Ok(())
     }
 

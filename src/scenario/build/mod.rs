@@ -21,6 +21,7 @@ pub mod periodic;
 pub mod places;
 pub mod profiles;
 pub mod reach;
+pub mod reached;
 pub mod slits;
 pub mod spots;
 pub mod surroundings;

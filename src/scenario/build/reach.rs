@@ -3,28 +3,163 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::engine::journeys::{Choice, JourneyStage};
-use crate::engine::math::Vector;
-use crate::engine::ways::{Destination, Floor, Ways};
+use crate::engine::math::{Vector, direction, perpendicular};
+use crate::engine::ways::{Destination, Floor, Regions, Ways};
 use crate::scenario::build::bodies::{Maps, described};
 use crate::scenario::build::ways::{Prepared, To};
 use crate::scenario::error::Problem;
 use crate::scenario::error::quote::{shown, to_centimeters};
 
-/// A point from which agents choose between the places of a stage.
-struct Stand<'a> {
+/// Points from which people go on to the next stage: of each journey, stage and place that they reach.
+pub type Stops = BTreeMap<(u16, usize, u16), Vec<Vector>>;
+
+/// Beside a point is what lies this far from it, meters.
+const BESIDE: f64 = 1e-3;
+
+/// Points of a place with the same regions beside them.
+struct Stand {
     point: Vector,
-    /// What messages call it.
-    name: &'a dyn Fn() -> String,
-    /// The number of the journey.
-    journey: u16,
+    /// The regions of the floor beside it.
+    sides: Vec<u32>,
 }
 
-/// The places that agents reach from one stage.
-#[derive(Default)]
-struct Reached {
-    places: BTreeSet<u16>,
+/// Where people of a journey choose between the places of a stage.
+struct Group {
+    /// The point that messages name.
+    point: Vector,
+    /// What messages call it.
+    name: String,
+    /// The regions that they reach from there.
+    reached: BTreeSet<u32>,
+}
+
+/// The places and parts of places that people reach on their journeys.
+struct Journeying<'a> {
+    prepared: &'a Prepared<'a>,
+    regions: Regions<'a>,
+    /// The stands of each place.
+    stands: Vec<Vec<Stand>>,
+    stops: Stops,
+    /// The places that somebody can choose.
+    chosen: BTreeSet<u16>,
     /// The places that cannot be reached from some point, and the first of these points.
     closed: BTreeMap<u16, Vector>,
+}
+
+impl<'a> Journeying<'a> {
+    fn new(prepared: &'a Prepared<'a>, ways: &'a Ways) -> Self {
+        let regions = Regions::of(ways);
+        let places = prepared.places.iter().zip(prepared.reached);
+        let stands = places.map(|(place, reached)| {
+            let mut stands: Vec<Stand> = Vec::new();
+            for &point in &reached.stands {
+                let beside = match place.line() {
+                    Some([a, b]) => vec![perpendicular(direction(b - a))],
+                    None => vec![Vector::x(), Vector::y()],
+                };
+                let beside = beside.iter().flat_map(|way| [way * BESIDE, way * -BESIDE]);
+                let mut sides: Vec<u32> =
+                    beside.filter_map(|way| regions.at(point + way)).collect();
+                sides.sort_unstable();
+                sides.dedup();
+                if stands.iter().all(|stand| stand.sides != sides) {
+                    stands.push(Stand { point, sides });
+                }
+            }
+            stands
+        });
+        Self {
+            stands: stands.collect(),
+            prepared,
+            regions,
+            stops: Stops::new(),
+            chosen: BTreeSet::new(),
+            closed: BTreeMap::new(),
+        }
+    }
+
+    /// Follows people on a journey from the points where they choose between the places of its first stage.
+    fn follow(&mut self, journey: u16, start: Group) -> Result<(), Problem> {
+        let prepared = self.prepared;
+        let mut groups = vec![start];
+        let stages = &prepared.scene.journeys.journeys[usize::from(journey)].stages;
+        for (k, stage) in stages.iter().enumerate() {
+            let mut next: BTreeMap<u16, Group> = BTreeMap::new();
+            for group in &groups {
+                self.check_stage((journey, stage), group)?;
+                for &place in &stage.places {
+                    for stand in self.reached(group, place) {
+                        let name = &prepared.places[usize::from(place)].name;
+                        let on = next.entry(place).or_insert_with(|| Group {
+                            point: stand.point,
+                            name: format!("`{}`", shown(name)),
+                            reached: BTreeSet::new(),
+                        });
+                        for side in self.beyond(group, stand) {
+                            on.reached.append(&mut self.regions.reached_from(side));
+                        }
+                    }
+                    let points = self.reached(group, place).map(|stand| stand.point);
+                    let points: Vec<Vector> = points.collect();
+                    match points.is_empty() {
+                        true => _ = self.closed.entry(place).or_insert(group.point),
+                        false => {
+                            self.chosen.insert(place);
+                            let stops = self.stops.entry((journey, k, place)).or_default();
+                            stops.extend(points);
+                        }
+                    }
+                }
+            }
+            next.retain(|&place, _| !prepared.places[usize::from(place)].is_exit());
+            groups = next.into_values().collect();
+        }
+        Ok(())
+    }
+
+    /// The parts of a place that a group reaches.
+    fn reached(&self, group: &Group, place: u16) -> impl Iterator<Item = &Stand> {
+        let stands = self.stands[usize::from(place)].iter();
+        stands.filter(|stand| stand.sides.iter().any(|side| group.reached.contains(side)))
+    }
+
+    /// The regions in which those of a group are that have passed a part of a place: behind a one-way door, those that
+    /// they did not reach before.
+    fn beyond(&self, group: &Group, stand: &Stand) -> Vec<u32> {
+        let is_new = |side: &&u32| !group.reached.contains(side);
+        let new: Vec<u32> = stand.sides.iter().filter(is_new).copied().collect();
+        match new.is_empty() || !self.regions.has_one_way() {
+            true => stand.sides.clone(),
+            false => new,
+        }
+    }
+
+    /// Checks that a group reaches a place of a stage; all of its places if people choose without looking at the way.
+    fn check_stage(
+        &self,
+        (journey, stage): (u16, &JourneyStage),
+        group: &Group,
+    ) -> Result<(), Problem> {
+        let looks = matches!(stage.choice, Choice::Nearest | Choice::Quickest);
+        let is_open = |place: &u16| self.reached(group, *place).next().is_some();
+        let mut places = stage.places.iter().copied();
+        let missed = match looks {
+            true => places.next().filter(|_| !stage.places.iter().any(is_open)),
+            false => places.find(|place| !is_open(place)),
+        };
+        let Some(missed) = missed else {
+            return Ok(());
+        };
+        let prepared = self.prepared;
+        let reason = format!(
+            "of `{}`: no way leads from {}, to `{}`: {}",
+            shown(&prepared.scene.journeys.journeys[usize::from(journey)].name),
+            group.name,
+            shown(&prepared.places[usize::from(missed)].name),
+            prepared.why_closed(group.point, Destination::Place(missed))?,
+        );
+        Err(Problem::new("journeys", reason))
+    }
 }
 
 impl Prepared<'_> {
@@ -52,97 +187,38 @@ impl Prepared<'_> {
         Ok(())
     }
 
-    /// Checks that all agents can reach the places of the first stage of their journey, and from there those of the
-    /// next stages. Returns notes about the places that no agent can choose.
-    pub fn check_journeys(&self, ways: &Ways) -> Result<Vec<String>, Problem> {
-        let journeys = &self.scene.journeys.journeys;
-        let mut first: BTreeMap<u16, Reached> = BTreeMap::new();
+    /// Checks that all agents can reach the places of the first stage of their journey, and from the parts of these that
+    /// they reach those of the next stages. Adds notes about the places that no agent can choose. Returns where people
+    /// go on to the next stages.
+    pub fn check_journeys(&self, ways: &Ways, notes: &mut Vec<String>) -> Result<Stops, Problem> {
+        let mut journeying = Journeying::new(self, ways);
+        let mut known = BTreeSet::new();
         for start in self.starts {
-            if let To::Journey(journey) = start.to {
-                let name = || {
-                    let starting = self.origins.starting(start.member);
-                    format!("({}, {}), where {starting}", start.place.x, start.place.y)
-                };
-                let from = Stand {
-                    point: start.place,
-                    name: &name,
-                    journey,
-                };
-                let stage = &journeys[usize::from(journey)].stages[0];
-                self.check_stage(ways, &from, stage, first.entry(journey).or_default())?;
+            let To::Journey(journey) = start.to else {
+                continue;
+            };
+            let region = journeying.regions.nearest(start.place);
+            if !known.insert((journey, region)) {
+                continue;
+            }
+            let starting = self.origins.starting(start.member);
+            let start = Group {
+                point: start.place,
+                name: format!("({}, {}), where {starting}", start.place.x, start.place.y),
+                reached: region.map_or(BTreeSet::new(), |region| {
+                    journeying.regions.reached_from(region)
+                }),
+            };
+            journeying.follow(journey, start)?;
+        }
+        for (&place, &from) in &journeying.closed {
+            if !journeying.chosen.contains(&place) {
+                let why = self.why_closed(from, Destination::Place(place))?;
+                let name = shown(&self.places[usize::from(place)].name);
+                notes.push(format!("no agent can choose `{name}`: {why}"));
             }
         }
-        let (mut chosen, mut closed) = (BTreeSet::new(), BTreeMap::new());
-        for (journey, mut before) in first {
-            for pair in journeys[usize::from(journey)].stages.windows(2) {
-                let mut next = Reached::default();
-                let places = pair[0].places.iter();
-                for place in places.filter(|place| before.places.contains(place)) {
-                    let place = &self.places[usize::from(*place)];
-                    if place.is_exit() {
-                        continue; // people leave there
-                    }
-                    let from = Stand {
-                        point: place.nearest_point(Vector::zeros()),
-                        name: &|| format!("`{}`", shown(&place.name)),
-                        journey,
-                    };
-                    self.check_stage(ways, &from, &pair[1], &mut next)?;
-                }
-                chosen.append(&mut before.places);
-                closed.append(&mut before.closed);
-                before = next;
-            }
-            chosen.append(&mut before.places);
-            closed.append(&mut before.closed);
-        }
-        let never = closed
-            .into_iter()
-            .filter(|(place, _)| !chosen.contains(place));
-        let note = |(place, from)| {
-            let why = self.why_closed(from, Destination::Place(place))?;
-            let name = shown(&self.places[usize::from(place)].name);
-            Ok(format!("no agent can choose `{name}`: {why}"))
-        };
-        never.map(note).collect()
-    }
-
-    /// Checks that agents reach a place of `stage` from a point; all of its places if they choose without looking at
-    /// the way. Adds these places to `reached`.
-    fn check_stage(
-        &self,
-        ways: &Ways,
-        from: &Stand,
-        stage: &JourneyStage,
-        reached: &mut Reached,
-    ) -> Result<(), Problem> {
-        let is_open = |place: u16| ways.is_open(from.point, Destination::Place(place));
-        let looks = matches!(stage.choice, Choice::Nearest | Choice::Quickest);
-        let places = || stage.places.iter().copied();
-        // Places that others reach are not looked up again.
-        let new = places().filter(|place| !reached.places.contains(place));
-        let (open, closed): (Vec<u16>, Vec<u16>) = new.partition(|&place| is_open(place));
-        let known = |place: &u16| reached.places.contains(place);
-        let is_any_open = !open.is_empty() || places().any(|place| known(&place) && is_open(place));
-        let missed = match looks {
-            true => places().next().filter(|_| !is_any_open),
-            false => places().find(|&place| !is_open(place)),
-        };
-        if let Some(missed) = missed {
-            let reason = format!(
-                "of `{}`: no way leads from {}, to `{}`: {}",
-                shown(&self.scene.journeys.journeys[usize::from(from.journey)].name),
-                (from.name)(),
-                shown(&self.places[usize::from(missed)].name),
-                self.why_closed(from.point, Destination::Place(missed))?,
-            );
-            return Err(Problem::new("journeys", reason));
-        }
-        reached.places.extend(open);
-        for place in closed {
-            reached.closed.entry(place).or_insert(from.point);
-        }
-        Ok(())
+        Ok(journeying.stops)
     }
 
     /// What says that all ways are too narrow, and what to do.

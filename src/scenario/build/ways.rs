@@ -12,9 +12,11 @@ use crate::engine::scene::{Goal, Scene};
 use crate::engine::ways::{Door, Floor, Goal as WayGoal, Rooms, WIDEST, WayError, Ways};
 use crate::scenario::build::bodies::Widest;
 use crate::scenario::build::doors;
-use crate::scenario::build::origin::{Member, Origins};
+use crate::scenario::build::origin::{Items, Member, Origins};
+use crate::scenario::build::reached::{Distances, Reached};
 use crate::scenario::error::Problem;
 use crate::scenario::error::quote::shown;
+use crate::scenario::file::File;
 use crate::scenario::floor_plan::{Rings, free, outlines};
 use crate::scenario::keys::goals::WayFinding;
 
@@ -41,10 +43,33 @@ pub enum To {
     Away,
 }
 
-/// The path maps of a scene that is otherwise complete; `None` if agents walk straight. `behind` are the floors behind
-/// exits and entrances. Adds notes about places that no agent can choose, and exits off the floor.
-pub fn ways(
+/// Adds the path maps to a scene that is otherwise complete, unless agents walk straight, and leaves of its places what
+/// people can reach. `behind` are the floors behind exits and entrances. Adds notes about places that no agent can
+/// choose, and exits off the floor.
+pub fn add(
+    (keys, items): (&File, &Items),
+    scene: &mut Scene,
+    behind: &Rings,
+    notes: &mut Vec<String>,
+) -> Result<(), Problem> {
+    let distances = Distances::new(&items.origins(keys, scene));
+    let places = scene.journeys.places.iter();
+    let reached = places.map(|place| distances.reached(place, &scene.walls));
+    let reached: Vec<Reached> = reached.collect();
+    for (place, reached) in scene.journeys.places.iter_mut().zip(&reached) {
+        place.goals.clone_from(&reached.goals);
+    }
+    scene.ways = ways(items.origins(keys, scene), &reached, behind, notes)?;
+    if scene.ways.is_some() {
+        distances.check(&scene.journeys.places, &reached)?;
+    }
+    Ok(())
+}
+
+/// The path maps of a scene; `None` if agents walk straight.
+fn ways(
     origins: Origins,
+    reached: &[Reached],
     behind: &Rings,
     notes: &mut Vec<String>,
 ) -> Result<Option<Arc<Ways>>, Problem> {
@@ -99,6 +124,7 @@ pub fn ways(
         origins,
         starts: &starts,
         places,
+        reached,
         goals: &goals,
         width: passable(&origins).unwrap_or_default(),
         is_given: keys.min_passage_width.is_some(),
@@ -110,9 +136,9 @@ pub fn ways(
         ways.divide(rooms);
     }
     prepared.check_goals(&ways)?;
-    notes.extend(prepared.check_journeys(&ways)?);
+    let stops = prepared.check_journeys(&ways, notes)?;
     notes.extend(doors::notes(places, &ways.floor, behind));
-    prepared.check_bodies(&ways.floor, notes)?;
+    prepared.check_bodies(&ways.floor, &stops, notes)?;
     // Where nothing can stand between a place of the floor and a goal, agents walk straight.
     let is_needed = has_journeys || !keys.doors.is_empty() || ways.bend();
     Ok(is_needed.then(|| Arc::new(ways)))
@@ -156,6 +182,8 @@ pub struct Prepared<'a> {
     pub origins: Origins<'a>,
     pub starts: &'a [Start],
     pub places: &'a [Place],
+    /// What people can reach of each place.
+    pub reached: &'a [Reached],
     pub goals: &'a [Vector],
     /// Narrower passages are closed, meters.
     pub width: f64,
@@ -175,7 +203,11 @@ impl Prepared<'_> {
     pub fn ways(&self, width: f64) -> Result<Ways, Problem> {
         let floor = self.floor(width)?;
         doors::check(self.places, &floor)?;
-        let places: Vec<_> = self.places.iter().map(Place::goals).collect();
+        let places: Vec<_> = self
+            .places
+            .iter()
+            .map(|place| place.goals.clone())
+            .collect();
         Ways::new(floor, &places, self.goals.to_vec()).map_err(|error| match error {
             WayError::NotOnFloor(point) => self.not_on_floor(point),
             error => unusable(error),
@@ -189,14 +221,15 @@ impl Prepared<'_> {
                 return None;
             };
             Some(Door {
-                line: door.line,
+                line: doors::up_to_walls(door.line, &self.scene.walls),
                 place: number,
                 one_way: door.one_way,
             })
         });
         let doors: Vec<Door> = doors.collect();
         let goals = ways.goals().iter().map(|&goal| vec![WayGoal::Point(goal)]);
-        let goals: Vec<_> = self.places.iter().map(Place::goals).chain(goals).collect();
+        let places = self.places.iter().map(|place| place.goals.clone());
+        let goals: Vec<_> = places.chain(goals).collect();
         let areas = areas(self.scene, self.starts)?;
         let mut widths = [WIDEST, f64::INFINITY].into_iter();
         loop {
@@ -209,7 +242,8 @@ impl Prepared<'_> {
                 Some(k) => {
                     let name = shown(&self.places[usize::from(doors[k].place)].name);
                     let reason = format!(
-                        "people can walk around `{name}`: it does not lie between two parts of the floor"
+                        "people can walk around `{name}`: it does not lie between two parts of the floor; draw it from \
+                         wall to wall across a passage"
                     );
                     return Err(Problem::new(format!("doors[{k}].line"), reason));
                 }
@@ -220,7 +254,7 @@ impl Prepared<'_> {
     fn not_on_floor(&self, point: Vector) -> Problem {
         let lies = "lies in an obstacle or outside of the walkable area; move it onto the floor";
         let has_point = |place: &&Place| {
-            place.goals().iter().any(|goal| match *goal {
+            place.goals.iter().any(|goal| match *goal {
                 WayGoal::Point(p) => p == point,
                 WayGoal::Line([a, _]) => a == point,
             })
@@ -305,8 +339,8 @@ fn areas(scene: &Scene, starts: &[Start]) -> Result<Vec<Area>, Problem> {
         To::Goal { goal } => [start.place, goal],
         To::Journey(_) | To::Away => [start.place; 2],
     });
-    let places = scene.journeys.places.iter().flat_map(Place::goals);
-    let places = places.flat_map(|goal| match goal {
+    let places = scene.journeys.places.iter().flat_map(|place| &place.goals);
+    let places = places.flat_map(|goal| match *goal {
         WayGoal::Point(p) => [p; 2],
         WayGoal::Line(ends) => ends,
     });

@@ -124,7 +124,7 @@ impl Draft {
             choice: keys.route_choice.unwrap_or_default(),
             knowledge: keys.knowledge,
         };
-        scene.ways = ways::ways(items.origins(keys, &scene), &behind, &mut notes)?;
+        ways::add((keys, &items), &mut scene, &behind, &mut notes)?;
         scene.integrator = keys.integrator.for_scene(&scene);
         scene.clock = numerics::clock_for(keys, &scene)?;
         let placed = scene.agents.len() as u64;

@@ -1,0 +1,79 @@
+//! Which ways closed doors block, and until when.
+
+use serde::Serialize;
+
+use super::Simulation;
+use crate::engine::journeys::ChangeKind;
+use crate::engine::scene::Scene;
+use crate::engine::ways::{Rooms, Step};
+
+/// A way that closed doors block.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Closed {
+    /// When the times and events of the scenario open it, seconds; `None`: never.
+    pub until_secs: Option<f64>,
+}
+
+impl std::fmt::Display for Closed {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self.until_secs {
+            Some(until) => write!(f, "closed until {until:.2} s"),
+            None => f.write_str("closed"),
+        }
+    }
+}
+
+impl Simulation {
+    /// Whether closed doors block every way of agent `i` to a path map's goal, or every one that begins with `step`.
+    pub fn closed_way(&self, i: usize, goal: u16, step: Option<Step>) -> Option<Closed> {
+        let (scene, goal) = (&self.fixed.scene, usize::from(goal));
+        let rooms = scene.rooms()?;
+        let p = self.crowd.agents.position[i];
+        let here = rooms.floor.locate_or_nearest(None, p)?;
+        if step.is_none() && rooms.length_to_goal(p, here, goal).is_some() {
+            return None;
+        }
+        let steps = match &step {
+            Some(step) => std::slice::from_ref(step),
+            None => rooms.steps_out(rooms.room(here)),
+        };
+        let places = self.crowd.progress.places.iter();
+        let mut open: Vec<bool> = places.map(|place| place.open).collect();
+        let is_blocked = |open: &[bool]| blocks(rooms, (steps, goal), open);
+        if !is_blocked(&open) {
+            return None;
+        }
+        Some(Closed {
+            until_secs: later(scene, self.crowd.clock.time(), |place, kind| {
+                if let Some(open) = open.get_mut(usize::from(place)) {
+                    *open = kind == ChangeKind::Open;
+                }
+                !is_blocked(&open)
+            }),
+        })
+    }
+}
+
+/// The time of the first change of a place after `now` at which `is_it` holds, seconds.
+fn later(scene: &Scene, now: f64, mut is_it: impl FnMut(u16, ChangeKind) -> bool) -> Option<f64> {
+    let changes = scene.journeys.changes.iter();
+    let mut changes = changes.filter(|change| change.at > now);
+    changes
+        .find(|change| is_it(change.place, change.kind))
+        .map(|change| change.at)
+}
+
+/// Whether all ways to a goal that begin with one of some steps lead through a door that is not open.
+fn blocks(rooms: &Rooms, (steps, goal): (&[Step], usize), open: &[bool]) -> bool {
+    let is_shut = |step: Step| {
+        let door = rooms.opening(step).door();
+        door.is_some_and(|door| open.get(usize::from(door)) == Some(&false))
+    };
+    let onward = rooms.onward(goal, |step, length| match step.is_some_and(is_shut) {
+        true => f64::INFINITY,
+        false => length,
+    });
+    steps
+        .iter()
+        .all(|&step| is_shut(step) || !onward[step as usize].is_finite())
+}
