@@ -239,3 +239,126 @@ fn compared_answers_are_named() {
         .collect();
     assert_eq!(titles.len(), 2);
 }
+
+#[test]
+fn a_row_of_a_study_without_a_value_leaves_the_others_theirs() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = serde_json::json!({
+        "scenario": "evacuation", "name": "rows", "seeds": 2,
+        "settings": {
+            "grids.0.columns": 7, "grids.0.rows": 7, "measurements.1.flow_of_first.arrivals": 30
+        },
+        "list": [{"label": "whole"}, {"label": "too short", "duration_secs": 1}]
+    });
+    fs::write(folder.path().join("rows.json"), study.to_string()).unwrap();
+    let wanted = ["--error", "flow_per_s=40%", "--error", "time_secs=40%"];
+    let typed = [
+        &["sweep", "rows.json", "--json", "--out", "out"],
+        &wanted[..],
+    ]
+    .concat();
+    let output = run_in(folder.path(), &typed);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(said.contains("too short: flow_per_s: too few of"), "{said}");
+    let rows = &json(&output)["rows"];
+    let names = |row: usize| -> Vec<&str> {
+        let results = rows[row]["estimate"]["results"].as_array().unwrap();
+        results
+            .iter()
+            .map(|one| one["name"].as_str().unwrap())
+            .collect()
+    };
+    assert_eq!(names(0), ["flow_per_s", "time_secs"]);
+    assert_eq!(names(1), ["time_secs"]);
+    assert_eq!(rows[1]["estimate"]["without"].as_array().unwrap().len(), 1);
+    // The table has the value of the one row, and the time of both.
+    let table = fs::read_to_string(folder.path().join("out/rows-estimate.csv")).unwrap();
+    let lines: Vec<Vec<&str>> = table
+        .lines()
+        .map(|line| line.split(',').collect())
+        .collect();
+    let column = |name: &str| lines[0].iter().position(|cell| *cell == name).unwrap();
+    let value = |row: usize, name: &str| lines[row][column(name)].parse::<f64>().ok();
+    let flow = rows[0]["estimate"]["results"][0]["value"].as_f64();
+    assert!(flow.is_some() && value(1, "flow_per_s") == flow, "{table}");
+    assert_eq!(
+        (value(2, "flow_per_s"), value(2, "flow_per_s_n")),
+        (None, None)
+    );
+    assert_eq!(value(2, "time_secs"), Some(1.0));
+}
+
+#[test]
+fn a_bound_of_a_result_that_runs_lack_is_an_error_that_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let typed = [
+        "--bound",
+        "flow_per_s=80%",
+        "--set",
+        "duration_secs=1",
+        "--out",
+        "out",
+    ];
+    let output = run_in(folder.path(), &estimate(&typed));
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    let why = "have no value and count as above all others, so no bound holds for 80 % of runs";
+    assert!(
+        said.contains("not everything that was asked for has a value"),
+        "{said}"
+    );
+    assert!(said.contains(why), "{said}");
+}
+
+#[test]
+fn what_a_run_prints_first_can_be_estimated_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let names = ["t95_secs", "highest_density", "longest_queue", "arrived"];
+    let errors: Vec<String> = names.iter().map(|name| format!("{name}=60%")).collect();
+    let mut typed: Vec<&str> = errors.iter().flat_map(|error| ["--error", error]).collect();
+    typed.extend(["--json", "--out", "out"]);
+    let output = run_in(folder.path(), &estimate(&typed));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let results = &json(&output)["estimate"]["results"];
+    // A run by itself has the values that the answer lists for its step and the first seed.
+    let step = &results[0]["steps"][0];
+    let secs = step["step"].as_f64().unwrap();
+    let [step, every] = [
+        ("time_step_secs", secs),
+        ("coarse_every", (0.1 / secs).round()),
+    ]
+    .map(|(key, value)| format!("{key}={value}"));
+    let alone = [
+        "evacuation",
+        "--preset",
+        "fast",
+        "--seed",
+        "1",
+        "--json",
+        "--set",
+        &step,
+        "--set",
+        &every,
+    ];
+    let alone = json(&run_in(folder.path(), &[&alone[..], &SMALL[..4]].concat()));
+    let queues = alone["longest_queues"].as_array();
+    let queue = queues
+        .and_then(|all| all.first())
+        .map_or(0.0, |one| one["agents"].as_f64().unwrap());
+    let expected = [
+        alone["t95_secs"].as_f64().unwrap(),
+        alone["highest_density"]["density_per_m2"].as_f64().unwrap(),
+        queue,
+        49.0,
+    ];
+    for (k, expected) in expected.into_iter().enumerate() {
+        let name = results[k]["name"].as_str().unwrap();
+        let steps = results[k]["steps"].as_array().unwrap();
+        let at = steps
+            .iter()
+            .find(|at| at["step"].as_f64() == Some(secs))
+            .unwrap();
+        assert_eq!((name, at["values"][0].as_f64()), (names[k], Some(expected)));
+    }
+}

@@ -222,7 +222,7 @@ fn runs_without_a_value_are_counted_apart() {
     let output = run_in(folder.path(), &estimate("out", &more));
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        stderr(&output).contains("fewer than two of 4 runs"),
+        stderr(&output).contains("flow_per_s: too few of 4 runs have a value"),
         "{}",
         stderr(&output)
     );

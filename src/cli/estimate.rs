@@ -127,7 +127,11 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
     }
     tell(program.json, || answer.json(), || answer.text())?;
     match &answer.stopped {
-        None => Ok(()),
+        None if answer.without.is_empty() => Ok(()),
+        None => Err(Failure::Output(format!(
+            "not everything that was asked for has a value:\n  {}",
+            answer.without.join("\n  ")
+        ))),
         Some(why) => Err(Failure::Output(format!(
             "not all errors or bounds are as asked for: {why}; the runs are kept, so that the same command with a \
              higher limit goes on"

@@ -7,11 +7,30 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::engine::journeys::{Kind, Place};
+use crate::engine::scene::Scene;
 use crate::engine::simulation::{self, PlaceState, Simulation};
 use crate::runs::drive::{End, Run};
 use crate::scenario::measurements::{
     HighestDensity, Left, LongestQueue, Metric, StuckGroup, times_to_leave,
 };
+
+/// The results that every run prints first, but for those of single places.
+const FIRST: [&str; 8] = [
+    "arrived",
+    "remaining",
+    "stuck",
+    "t50_secs",
+    "t95_secs",
+    "t100_secs",
+    "highest_density",
+    "longest_queue",
+];
+/// `left_by.EXIT`: the number of agents that left by an exit.
+const LEFT_BY: &str = "left_by";
+/// `queue.PLACE`: the longest queue before a place.
+const QUEUE: &str = "queue";
+/// The kind of exits.
+const EXIT: &str = "exit";
 
 /// The results of a run, part of what `--json` reports.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -149,6 +168,52 @@ impl Summary {
     /// A metric by name; `None` if it is not measured or has no value.
     pub fn metric(&self, name: &str) -> Option<f64> {
         self.metrics.get(name)?.as_f64()
+    }
+
+    /// A result that runs print first, by its name in studies and estimates ([`Self::first_names`]); `None` if the run
+    /// has no such result, or it has no value.
+    pub fn first(&self, name: &str) -> Option<f64> {
+        let left_by = |exit: &str| {
+            let place = self.places.iter().find(|place| place.name == exit)?;
+            (place.kind == EXIT).then(|| f64::from(place.passed))
+        };
+        let queue = |before: &str| {
+            let mut queues = self.longest_queues.iter();
+            let queue = queues.find(|queue| queue.before == before);
+            queue.map_or(0.0, |queue| f64::from(queue.agents))
+        };
+        match (name, name.split_once('.')) {
+            ("arrived", _) => Some(self.arrived as f64),
+            ("remaining", _) => Some(self.remaining as f64),
+            ("stuck", _) => Some(self.stuck as f64),
+            ("t50_secs", _) => self.t50_secs,
+            ("t95_secs", _) => self.t95_secs,
+            ("t100_secs", _) => self.t100_secs,
+            ("highest_density", _) => self.highest_density.map(|highest| highest.density_per_m2),
+            ("longest_queue", _) => {
+                let queues = self.longest_queues.iter();
+                Some(
+                    queues
+                        .map(|queue| f64::from(queue.agents))
+                        .fold(0.0, f64::max),
+                )
+            }
+            (_, Some((LEFT_BY, exit))) => left_by(exit),
+            (_, Some((QUEUE, before))) => Some(queue(before)),
+            _ => None,
+        }
+    }
+
+    /// The names of the results that runs of a scene print first: `left_by.EXIT` and `queue.PLACE` among them.
+    pub fn first_names(scene: &Scene) -> Vec<String> {
+        let mut names = FIRST.map(str::to_owned).to_vec();
+        for place in &scene.journeys.places {
+            if place.is_exit() {
+                names.push(format!("{LEFT_BY}.{}", place.name));
+            }
+            names.push(format!("{QUEUE}.{}", place.name));
+        }
+        names
     }
 
     /// Data by name; `None` if they are not measured, have another form, or the run ended before them.

@@ -80,8 +80,11 @@ pub struct Answer {
     pub confidence: f64,
     /// The first seed.
     pub first_seed: u64,
-    /// The wanted results.
+    /// The wanted results that have values.
     pub results: Vec<Row>,
+    /// Why the other wanted results and bounds have none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub without: Vec<String>,
     /// The wanted bounds.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub bounds: Vec<Bounded>,
@@ -134,8 +137,16 @@ impl Answer {
         let finished = || results.clone().flatten();
         let wanted = question.request.wanted.iter().enumerate();
         let rows: Vec<Row> = wanted
+            .clone()
             .filter_map(|(k, wanted)| Row::of(runs, k, wanted))
             .collect();
+        let bounds = question.request.bounds.iter();
+        let bounds: Vec<Bounded> = bounds.map(|bound| runs.bounded(bound)).collect();
+        let without = wanted.filter(|(k, _)| runs.series(*k).means(&runs.priors[*k]).is_none());
+        let without = without.map(|(_, wanted)| runs.without_values(&wanted.name));
+        let unbounded = bounds.iter().filter(|bound| bound.is_lost());
+        let unbounded = unbounded.map(|bound| format!("{}: {}", bound.name, bound.lost()));
+        let without = without.chain(unbounded).collect();
         let of_presets = || rows.iter().flat_map(|row| &row.presets);
         let costs = runs.timed.iter();
         let costs = costs.map(|&timed| Cost::of_all(of_presets(), timed));
@@ -148,12 +159,8 @@ impl Answer {
             confidence: question.request.confidence,
             first_seed: question.first_seed,
             results: rows,
-            bounds: question
-                .request
-                .bounds
-                .iter()
-                .map(|bound| runs.bounded(bound))
-                .collect(),
+            without,
+            bounds,
             runs: Counts {
                 all: results.clone().count(),
                 failed: results.clone().filter(|result| result.is_err()).count(),
@@ -167,6 +174,11 @@ impl Answer {
             validation: Vec::new(),
             stopped: runs.stopped.clone(),
         }
+    }
+
+    /// The wanted result with this name, if it has values.
+    pub fn row(&self, name: &str) -> Option<&Row> {
+        self.results.iter().find(|row| row.name == name)
     }
 
     /// Everything as one object.

@@ -38,10 +38,9 @@ impl Runs<'_> {
 
     /// What the wanted results say to rows of the same study.
     pub(super) fn known(&self) -> Vec<Known> {
-        let wanted = self.question.request.wanted.iter().zip(self.goals());
-        let known = wanted.filter_map(|(wanted, goal)| {
-            Known::of(&self.question.title, &wanted.name, &goal.means)
-        });
-        known.collect()
+        let known = self.named_goals();
+        known
+            .filter_map(|(name, goal)| Known::of(&self.question.title, name, &goal.means))
+            .collect()
     }
 }

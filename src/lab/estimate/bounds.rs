@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::run::{Runs, StepRuns};
 use super::wanted::{Bound, IMO_RUNS, Sampling};
+use crate::analysis::round;
 use crate::analysis::statistics::probability_above;
 use crate::lab::error::LabError;
 use crate::lab::sweep::number;
@@ -59,6 +60,26 @@ impl Bounded {
     /// The share of runs on the inner side of the bound.
     pub fn inner(&self) -> f64 {
         self.share.max(1.0 - self.share)
+    }
+
+    /// Whether there were enough runs, but the run with the bound's rank has no value.
+    pub fn is_lost(&self) -> bool {
+        self.value.is_none() && self.rank.is_some()
+    }
+
+    /// Why it is.
+    pub fn lost(&self) -> String {
+        let (side, share) = match self.is_upper() {
+            true => ("above", self.inner()),
+            false => ("below", 1.0 - self.inner()),
+        };
+        format!(
+            "{} of {} runs have no value and count as {side} all others, so no bound holds for {} % of runs; \
+             let the runs last longer, or ask for a result that they have",
+            self.missing,
+            self.runs,
+            round::brief(100.0 * share)
+        )
     }
 }
 

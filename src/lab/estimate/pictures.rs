@@ -23,11 +23,11 @@ const PANEL: [f64; 2] = [190.0, 130.0];
 /// Three panels for each result: its mean at each step, with the limit; its error after each round of runs; and the
 /// error over the computing time, beside that of the default step.
 pub fn sheet(runs: &Runs, answer: &Answer) -> Sheet {
-    let panels = answer
-        .results
-        .iter()
-        .enumerate()
-        .flat_map(|(k, row)| [by_step(row), by_round(runs, k, row), by_time(runs, k, row)]);
+    let wanted = runs.question.request.wanted.iter();
+    let places = wanted.enumerate();
+    let rows = places.filter_map(|(k, wanted)| Some((k, answer.row(&wanted.name)?)));
+    let panels =
+        rows.flat_map(|(k, row)| [by_step(row), by_round(runs, k, row), by_time(runs, k, row)]);
     let title = format!(
         "{}: {}; {} % intervals from chance and time step",
         answer.scenario,
@@ -146,7 +146,7 @@ fn by_round(runs: &Runs, k: usize, row: &Row) -> Panel {
     let reached = runs
         .looks
         .iter()
-        .map(|look| (look.runs.iter().sum::<usize>() as f64, look.reached[k]));
+        .filter_map(|look| Some((look.runs.iter().sum::<usize>() as f64, look.reached[k]?)));
     let reached: Vec<_> = reached.collect();
     let line = |of: fn(&super::Reached) -> f64, number: usize, label: &str| {
         let points = reached.iter().map(|(runs, reached)| [*runs, of(reached)]);
@@ -177,7 +177,7 @@ fn by_time(runs: &Runs, k: usize, row: &Row) -> Panel {
             .sum()
     };
     let looks = runs.looks.iter();
-    let made = looks.map(|look| [secs(&look.runs), look.reached[k].error]);
+    let made = looks.filter_map(|look| Some([secs(&look.runs), look.reached[k]?.error]));
     let made: Vec<[f64; 2]> = made.collect();
     // Chance falls with the number of runs, the error of the step stays.
     let last = made.last().map_or(1.0, |point| point[0]);

@@ -144,9 +144,10 @@ impl Question {
         let asked = asked.into_iter();
         let kinds = asked.map(|name| (name.clone(), kind_of(&scenario.measurements, name)));
         let kinds = kinds.collect();
+        let first = Summary::first_names(&scenario.scene);
         let run = Run::new(scenario).map_err(RunError::from)?;
         let names = Summary::of(&run).metrics.into_keys();
-        let names = distinct(names.chain(OF_RUNS.map(str::to_owned)));
+        let names = distinct(names.chain(OF_RUNS.map(str::to_owned)).chain(first));
         let wanted = request.wanted.iter().map(|wanted| wanted.name.as_str());
         check("--error", wanted.collect(), &names)?;
         let bounds = request.bounds.iter().map(|bound| bound.name.as_str());

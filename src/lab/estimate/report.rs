@@ -61,6 +61,9 @@ impl Answer {
                 row.name, row.missing, self.runs.all
             );
         }
+        for why in &self.without {
+            text += &format!("{why}.\n");
+        }
         if let Some(why) = &self.stopped {
             let missed = self.results.iter().filter(|row| !row.is_reached);
             let missed: Vec<String> = missed

@@ -23,16 +23,16 @@ impl Answers<'_> {
         };
         let labels: Vec<String> = self.rows.iter().map(|(cell, _)| label(cell)).collect();
         let names = self.names();
-        let panels = names.iter().enumerate().map(|(k, name)| {
-            let points = self
-                .rows
-                .iter()
-                .enumerate()
-                .map(|(place, (_, answer))| Point {
+        let panels = names.iter().map(|name| {
+            let rows = self.rows.iter().enumerate();
+            let points = rows.filter_map(|(place, (_, answer))| {
+                let reached = answer.row(name)?.reached;
+                Some(Point {
                     x: place as f64 + 0.5,
-                    y: answer.results[k].reached.value,
-                    error: answer.results[k].reached.error,
-                });
+                    y: reached.value,
+                    error: reached.error,
+                })
+            });
             let points: Vec<Point> = points.collect();
             let ends = points.iter().flat_map(|p| [p.y - p.error, p.y + p.error]);
             let x = Axis::names(&axes.join(", "), labels.clone());
@@ -46,8 +46,7 @@ impl Answers<'_> {
             true => COLUMNS.min(names.len()),
             false => COLUMNS,
         };
-        let costs = names.iter().enumerate();
-        let costs = costs.filter_map(|(k, name)| self.costs_of(k, name));
+        let costs = names.iter().filter_map(|name| self.costs_of(name));
         let panels: Vec<Panel> = errors.into_iter().chain(costs).collect();
         Sheet::new(
             &format!(
@@ -62,18 +61,18 @@ impl Answers<'_> {
 
     /// Total errors of a result, in percent, over the times that all results take with these errors: those of presets
     /// if the error of their step is known, and for the paper's also if it must be found.
-    fn costs_of(&self, k: usize, result: &str) -> Option<Panel> {
+    fn costs_of(&self, result: &str) -> Option<Panel> {
         let (_, first) = self.rows.first()?;
         if first.costs.is_empty() {
             return None;
         }
         let percent = |answer: &Answer| {
-            let reached = answer.results[k].reached;
-            100.0 * reached.error / reached.value.abs()
+            let reached = answer.row(result)?.reached;
+            Some(100.0 * reached.error / reached.value.abs())
         };
         let answers = || self.rows.iter().map(|(_, answer)| answer);
         let at = |secs: &dyn Fn(&Answer) -> Option<f64>| -> Vec<[f64; 2]> {
-            let points = answers().filter_map(|answer| Some([secs(answer)?, percent(answer)]));
+            let points = answers().filter_map(|answer| Some([secs(answer)?, percent(answer)?]));
             points.collect()
         };
         let mut all = at(&|answer| Some(answer.secs));

@@ -24,12 +24,14 @@ use crate::runs::store::Store;
 /// The questions of a study: one for each combination of its settings.
 pub struct Questions<'a> {
     study: &'a Study,
+    wanted: Vec<String>,
     questions: Vec<(&'a Cell, Question)>,
 }
 
 /// The answers to them.
 pub struct Answers<'a> {
     pub(super) study: &'a Study,
+    wanted: Vec<String>,
     /// The first cell of each combination, with its answer.
     pub rows: Vec<(&'a Cell, Answer)>,
 }
@@ -50,8 +52,10 @@ impl<'a> Questions<'a> {
             let in_row = |error| QuestionError::Row(cell.to_string(), Box::new(error));
             Ok((cell, question.map_err(in_row)?))
         };
+        let wanted = request.wanted.iter().map(|wanted| wanted.name.clone());
         Ok(Self {
             study,
+            wanted: wanted.collect(),
             questions: firsts.map(question).collect::<Result<_, QuestionError>>()?,
         })
     }
@@ -80,6 +84,7 @@ impl<'a> Questions<'a> {
         }
         Ok(Answers {
             study: self.study,
+            wanted: self.wanted.clone(),
             rows,
         })
     }
@@ -103,19 +108,16 @@ impl Answers<'_> {
         Ok(store.write(&format!("{name}.csv"), &self.csv()?)?)
     }
 
-    /// The names of the results.
-    pub fn names(&self) -> Vec<String> {
-        let first = self.rows.first();
-        let results = first.map(|(_, answer)| answer.results.as_slice());
-        let results = results.unwrap_or_default().iter();
-        results.map(|row| row.name.clone()).collect()
+    /// The names of the wanted results.
+    pub fn names(&self) -> &[String] {
+        &self.wanted
     }
 
-    /// The errors that are larger than asked for, a line for each.
+    /// The errors that are larger than asked for, and the results without values, a line for each.
     pub fn missed(&self) -> Vec<String> {
-        let rows = self.rows.iter().filter_map(|(cell, answer)| {
-            let why = answer.stopped.as_ref()?;
-            Some(format!("{cell}: {why}"))
+        let rows = self.rows.iter().flat_map(|(cell, answer)| {
+            let reasons = answer.stopped.iter().chain(&answer.without);
+            reasons.map(move |why| format!("{cell}: {why}"))
         });
         rows.collect()
     }
@@ -133,15 +135,17 @@ impl Answers<'_> {
     /// For a terminal: value ± error, and the number of runs.
     pub fn text(&self) -> String {
         let mut columns = self.settings();
-        for (k, name) in self.names().iter().enumerate() {
+        for name in self.names() {
             columns = columns
                 .column(name, |(_, answer)| {
-                    let row = &answer.results[k];
+                    let row = answer.row(name)?;
                     let [value, error] = [row.reached.value, row.reached.error];
-                    format!("{} ± {}", row.written(value), row.written(error))
+                    Some(format!("{} ± {}", row.written(value), row.written(error)))
                 })
-                .column("reached", |(_, answer)| answer.results[k].yes_or_no())
-                .column("n", |(_, answer)| runs(&answer.results[k]));
+                .column("reached", |(_, answer)| {
+                    answer.row(name).map_or("no value", Row::yes_or_no)
+                })
+                .column("n", |(_, answer)| answer.row(name).map(runs));
         }
         for (k, name) in self.bound_names().into_iter().enumerate() {
             columns = columns.column(&name, |(_, answer)| {
@@ -204,19 +208,16 @@ impl Answers<'_> {
     /// The table cannot be written.
     pub fn csv(&self) -> Result<Vec<u8>, LabError> {
         let mut columns = self.settings();
-        for (k, name) in self.names().iter().enumerate() {
+        for name in self.names() {
+            let reached = |line: &Line| Some(line.1.row(name)?.reached);
             columns = columns
-                .column(name, |(_, answer)| answer.results[k].reached.value)
-                .column(&format!("{name}_error"), |(_, answer)| {
-                    answer.results[k].reached.error
-                })
-                .column(&format!("{name}_seeds"), |(_, answer)| {
-                    answer.results[k].reached.seeds
-                })
-                .column(&format!("{name}_step"), |(_, answer)| {
-                    answer.results[k].reached.step
-                })
-                .column(&format!("{name}_n"), |(_, answer)| runs(&answer.results[k]));
+                .column(name, |line| Some(reached(line)?.value))
+                .column(&format!("{name}_error"), |line| Some(reached(line)?.error))
+                .column(&format!("{name}_seeds"), |line| Some(reached(line)?.seeds))
+                .column(&format!("{name}_step"), |line| Some(reached(line)?.step))
+                .column(&format!("{name}_n"), |(_, answer)| {
+                    answer.row(name).map(runs)
+                });
         }
         for (k, name) in self.bound_names().into_iter().enumerate() {
             columns = columns.column(&name, |(_, answer)| answer.bounds[k].value);

@@ -9,7 +9,7 @@ use super::costs::Timed;
 use super::plan::{Goal, Offer, further};
 use super::prior::{Known, Prior};
 use super::question::{Question, Rung};
-use super::series::{Reached, Series};
+use super::series::{Means, Reached, Series};
 use crate::lab::error::LabError;
 use crate::lab::jobs::each;
 use crate::lab::sweep::number;
@@ -36,8 +36,8 @@ pub struct StepRuns {
 pub struct Look {
     /// The number of runs at each step.
     pub runs: Vec<usize>,
-    /// What is reached for each wanted result.
-    pub reached: Vec<Reached>,
+    /// What is reached for each wanted result; `None` without values.
+    pub reached: Vec<Option<Reached>>,
 }
 
 /// All runs of an estimate.
@@ -62,7 +62,7 @@ pub struct Runs<'a> {
 /// taken from the store. `rows` are the results of finished rows of the same study.
 ///
 /// # Errors
-/// Results cannot be stored, a run is invalid, or a wanted result has no value.
+/// Results cannot be stored, or a run is invalid.
 pub fn run<'a>(
     question: &'a Question,
     rows: &[Known],
@@ -129,7 +129,7 @@ impl<'a> Runs<'a> {
         loop {
             let limit = self.cut(&mut wanted, elapsed());
             self.make(&wanted, store, listener)?;
-            self.look()?;
+            self.look();
             listener.notes(&self.progress());
             let confidence = self.question.request.confidence;
             let Some(more) = further(&self.goals(), &self.offers(), confidence) else {
@@ -303,42 +303,37 @@ impl<'a> Runs<'a> {
 
     /// The wanted results that have values.
     pub fn goals(&self) -> Vec<Goal> {
-        let wanted = self.question.request.wanted.iter().enumerate();
-        let goal = |(k, wanted): (usize, &super::Wanted)| {
-            Some(Goal {
-                means: self.series(k).means(&self.priors[k])?,
-                tolerance: wanted.error,
-            })
-        };
-        wanted.filter_map(goal).collect()
+        self.named_goals().map(|(_, goal)| goal).collect()
+    }
+
+    /// These with their names.
+    pub(super) fn named_goals(&self) -> impl Iterator<Item = (&str, Goal)> {
+        let wanted = self.question.request.wanted.iter().zip(self.means());
+        wanted.filter_map(|(wanted, means)| {
+            let (means, tolerance) = (means?, wanted.error);
+            Some((wanted.name.as_str(), Goal { means, tolerance }))
+        })
     }
 
     /// Notes what is reached.
-    fn look(&mut self) -> Result<(), LabError> {
+    fn look(&mut self) {
         let confidence = self.question.request.confidence;
-        let count = self.question.request.wanted.len();
-        let means: Vec<_> = (0..count)
-            .map(|k| self.series(k).means(&self.priors[k]))
-            .collect();
-        if let Some(k) = means.iter().position(Option::is_none) {
-            return Err(LabError::Data(self.without_values(k)));
-        }
-        let reached = means.iter().flatten();
-        self.looks.push(Look {
-            runs: self
-                .levels
-                .iter()
-                .map(|level| level.results.len())
-                .collect(),
-            reached: reached.map(|means| means.reached(confidence).0).collect(),
-        });
-        Ok(())
+        let reached = self.means().map(|means| Some(means?.reached(confidence).0));
+        let reached = reached.collect();
+        let runs = self.levels.iter().map(|level| level.results.len());
+        let runs = runs.collect();
+        self.looks.push(Look { runs, reached });
     }
 
-    /// Why a wanted result has no values.
-    fn without_values(&self, wanted: usize) -> String {
-        let name = &self.question.request.wanted[wanted].name;
-        let results = self.levels.iter().flat_map(|level| &level.results);
+    /// The means of each wanted result; `None` without values.
+    fn means(&self) -> impl Iterator<Item = Option<Means>> {
+        let priors = self.priors.iter().enumerate();
+        priors.map(|(k, prior)| self.series(k).means(prior))
+    }
+
+    /// Why a result has no values.
+    pub(super) fn without_values(&self, name: &str) -> String {
+        let results = self.all_results();
         let failure = results.clone().find_map(|result| result.as_ref().err());
         let all = results.clone().count();
         let ended = |end| {
@@ -358,7 +353,7 @@ impl<'a> Runs<'a> {
             },
             |message| format!("the first error is: {message}"),
         );
-        format!("{name}: fewer than two of {all} runs at the same step have a value; {why}")
+        format!("{name}: too few of {all} runs have a value; {why}")
     }
 
     /// The state after the last round, in one line.
@@ -368,6 +363,9 @@ impl<'a> Runs<'a> {
         };
         let wanted = self.question.request.wanted.iter().zip(&look.reached);
         let results = wanted.map(|(wanted, reached)| {
+            let Some(reached) = reached else {
+                return format!("{} has no value", wanted.name);
+            };
             let [value, error] =
                 [reached.value, reached.error].map(|number| as_precise(number, reached.error));
             format!(

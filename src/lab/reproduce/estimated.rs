@@ -28,12 +28,12 @@ pub fn estimated(answers: &Answers) -> Result<String, LabError> {
         .column("profile", |(paper, _)| written(&paper.profile))
         .column("setting", |(paper, _)| paper.varied.as_ref().map(varied));
     let mut counts = [0; 3];
-    for (k, name) in answers.names().iter().enumerate() {
+    for name in answers.names() {
         let of = |row: &Row| value_with_band(&row.0, name);
-        let reached = |row: &Row| row.1.results[k].reached;
+        let reached = |row: &Row| Some(row.1.row(name)?.reached);
         for row in &rows {
-            if let Some((paper, band)) = of(row) {
-                counts[verdict(paper, band, reached(row)) as usize] += 1;
+            if let Some(((paper, band), ours)) = of(row).zip(reached(row)) {
+                counts[verdict(paper, band, ours) as usize] += 1;
             }
         }
         columns = columns
@@ -41,13 +41,13 @@ pub fn estimated(answers: &Answers) -> Result<String, LabError> {
                 of(row).map(|(paper, _)| paper)
             })
             .column("ours", |(_, answer)| {
-                let row = &answer.results[k];
+                let row = answer.row(name)?;
                 let [value, error] = [row.reached.value, row.reached.error];
-                format!("{} ± {}", row.written(value), row.written(error))
+                Some(format!("{} ± {}", row.written(value), row.written(error)))
             })
             .column("difference", |row| {
                 let (paper, band) = of(row)?;
-                let off = reached(row).value - paper;
+                let off = reached(row)?.value - paper;
                 Some(match band {
                     Band::Absolute(_) => format!("{off:+.2}"),
                     Band::Relative(_) => format!("{:+.1} %", 100.0 * off / paper),
@@ -55,7 +55,7 @@ pub fn estimated(answers: &Answers) -> Result<String, LabError> {
             })
             .column("band", |row| {
                 let (paper, band) = of(row)?;
-                Some(verdict(paper, band, reached(row)).text())
+                Some(verdict(paper, band, reached(row)?).text())
             });
     }
     let [kept, undecided, missed] = counts;

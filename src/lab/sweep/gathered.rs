@@ -218,6 +218,6 @@ pub(in crate::lab) fn number(result: &RunResult, name: &str) -> Option<f64> {
         (Some(value), _) => value.as_f64(),
         (None, "evacuated") => Some(result.evacuated as f64),
         (None, "time_secs") => Some(result.summary.time_secs),
-        (None, _) => None,
+        (None, name) => result.summary.first(name),
     }
 }
