@@ -161,6 +161,49 @@ fn trajectories_differ_from_the_first_time_at_which_a_person_is_elsewhere() {
     assert!(of_tracks(&a, &a).results.is_empty());
 }
 
+#[test]
+fn rows_of_people_that_only_one_file_has_are_counted_and_the_text_says_what_is_not_compared() {
+    let a = tracks("id,frame,x,y\n1,0,0,0\n2,0,9,0\n1,1,0,0\n2,1,9,0\n");
+    // Person 2 has another id in the second frame.
+    let renamed = tracks("id,frame,x,y\n1,0,0,0\n2,0,9,0\n1,1,0,0\n7,1,9,0\n");
+    let found = of_tracks(&a, &renamed);
+    let rows = found
+        .results
+        .iter()
+        .find(|one| one.name.starts_with("rows with an id"));
+    let rows = rows.unwrap_or_else(|| panic!("{found:?}"));
+    assert_eq!([&rows.a, &rows.b], [&json!(1), &json!(1)]);
+    assert!(
+        found
+            .text()
+            .contains("Other columns, such as densities and speeds, are not.")
+    );
+    let same = of_tracks(&a, &a).text();
+    assert!(same.starts_with("0 result(s) differ, "), "{same}");
+    assert!(same.contains("Compared: who is where and when"), "{same}");
+}
+
+#[test]
+fn seeds_and_ids_are_compared_digit_by_digit_and_have_no_percentages() {
+    let largest = u64::MAX;
+    let run = |seed: u64, agent: u32| {
+        let mut run = result(&json!({"flow": agent}), &json!({"seed": seed}));
+        run["seed"] = json!(seed);
+        run["stuck_because"] = json!([{"agents": agent, "agent": agent}]);
+        run
+    };
+    let found = of_reports(&run(largest, 2), &run(largest - 1, 4)).unwrap();
+    assert_eq!(found.settings.len(), 1, "{found:?}");
+    let percent = |name: &str| {
+        let one = found.results.iter().find(|one| one.name == name);
+        one.unwrap_or_else(|| panic!("{name}: {found:?}")).percent()
+    };
+    assert_eq!(percent("seed"), None);
+    assert_eq!(percent("stuck_because[0].agent"), None);
+    assert_eq!(percent("stuck_because[0].agents"), Some(100.0));
+    assert_eq!(percent("flow"), Some(100.0));
+}
+
 /// The text on stdout.
 fn text(arguments: &[&str]) -> String {
     String::from_utf8(run(arguments).stdout).unwrap()
@@ -192,6 +235,9 @@ fn the_program_compares_files_of_one_kind() {
     assert!(text(&["compare", &a, &b]).contains("seed"));
     assert!(text(&["compare", &path("a.csv"), &path("b.csv")]).contains("positions differ from"));
     refused(&["compare", &a, &path("b.csv")], 2, &["give two of a kind"]);
+    let answer = path("answer.json");
+    std::fs::write(&answer, r#"{"estimate": {"results": []}}"#).unwrap();
+    refused(&["compare", &a, &answer], 2, &["one is an estimate"]);
     // A recording has the result of its run.
     let recorded = |name: &str| path(&format!("{name}.rrd"));
     let same = run_json(&["compare", &a, &recorded("a"), "--json"]);

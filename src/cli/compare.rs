@@ -3,17 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use serde_json::Value;
 
 use super::failure::Failure;
 use super::inputs::tracks;
 use super::terminal::{talk, tell};
+use super::values::frame_rate;
 use crate::lab::differences::{Differences, of_reports, of_tracks};
 use crate::lab::estimate::{compared, is_answer};
 use crate::output::recording::Recorded;
 use crate::scenario::input;
 use crate::scenario::quote::shown;
-use crate::scenario::trajectories::{ReadOptions, Tracks};
+use crate::scenario::trajectories::{ReadOptions, Tracks, Unit};
 
 #[derive(Args)]
 pub struct CompareOptions {
@@ -22,6 +24,12 @@ pub struct CompareOptions {
     pub a: PathBuf,
     /// B: a file of the same kind; a result and a recording can be compared, too
     pub b: PathBuf,
+    /// Unit of the coordinates in trajectory files [default: that of the file, else m]
+    #[arg(long, value_parser = PossibleValuesParser::new(["m", "cm"]))]
+    pub unit: Option<String>,
+    /// Frames per second of trajectory files [default: that of the file]
+    #[arg(long, value_name = "N", value_parser = frame_rate)]
+    pub fps: Option<f64>,
     /// Print one JSON object instead of text
     #[arg(long)]
     pub json: bool,
@@ -34,7 +42,11 @@ enum Input {
 }
 
 pub fn run(options: &CompareOptions) -> Result<(), Failure> {
-    let (a, b) = (open(&options.a)?, open(&options.b)?);
+    let read = ReadOptions {
+        unit: options.unit.as_deref().and_then(Unit::named),
+        fps: options.fps,
+    };
+    let (a, b) = (open(&options.a, &read)?, open(&options.b, &read)?);
     let paths = [&options.a, &options.b];
     let [first, second] = paths.map(|path| path.display());
     let differences: Differences = match (&a, &b) {
@@ -42,6 +54,11 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
             let invalid = |error| Failure::Input(format!("{first} or {second}: {error}"));
             let compared = compared(a, b).map_err(invalid)?;
             return tell(options.json, || compared.json(), || compared.text());
+        }
+        (Input::Report(a), Input::Report(b)) if is_answer(a) || is_answer(b) => {
+            return Err(Failure::Input(format!(
+                "{first} and {second}: one is an estimate, the other is not; give two of a kind"
+            )));
         }
         (Input::Report(a), Input::Report(b)) => {
             let invalid = |error| Failure::Input(format!("{first} or {second}: {error}"));
@@ -67,7 +84,7 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
 }
 
 /// Reads a file of any kind.
-fn open(path: &Path) -> Result<Input, Failure> {
+fn open(path: &Path, options: &ReadOptions) -> Result<Input, Failure> {
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let refused = |reason: String| Failure::Input(format!("{}: {reason}", path.display()));
     let text = match extension.to_str() {
@@ -82,7 +99,7 @@ fn open(path: &Path) -> Result<Input, Failure> {
             report.ok_or_else(|| refused(reason.to_owned()))?
         }
         _ => {
-            let tracks = tracks(path, &ReadOptions::default())?;
+            let tracks = tracks(path, options)?;
             return Ok(Input::Tracks(Box::new(tracks)));
         }
     };

@@ -34,15 +34,21 @@ pub struct Differences {
     pub results: Vec<Difference>,
     /// The number of results that are equal.
     pub equal: usize,
+    /// What was not compared; empty for runs.
+    pub about: String,
 }
 
 impl Difference {
-    /// B − A, if both are numbers.
+    /// B − A, if both are quantities: numbers that are no seeds and no ids.
     pub fn change(&self) -> Option<f64> {
-        Some(self.b.as_f64()? - self.a.as_f64()?)
+        /// The ends of the names of seeds and ids.
+        const LABELS: [&str; 3] = ["seed", ".agent", ".id"];
+        let is_label = LABELS.iter().any(|end| self.name.ends_with(end));
+        let [a, b] = [&self.a, &self.b].map(|value| value.as_f64().filter(|_| !is_label));
+        Some(b? - a?)
     }
 
-    /// The change in percent of A, if both are numbers and A is not 0.
+    /// The change in percent of A, if both are quantities and A is not 0.
     pub fn percent(&self) -> Option<f64> {
         let a = self.a.as_f64().filter(|&a| a != 0.0)?;
         Some(100.0 * self.change()? / a.abs())
@@ -69,6 +75,7 @@ impl Differences {
             "settings": self.settings,
             "results": self.results.iter().map(entry).collect::<Vec<_>>(),
             "equal_results": self.equal,
+            "about": self.about,
         })
     }
 
@@ -94,7 +101,12 @@ impl Differences {
             text += &(table.table().text() + &more(&self.results));
         }
         let differ = self.results.len();
-        text + &format!("{differ} result(s) differ, {} are equal\n", self.equal)
+        let about = match self.about.as_str() {
+            "" => String::new(),
+            about => format!("{about}\n"),
+        };
+        let equal = self.equal;
+        text + &format!("{differ} result(s) differ, {equal} are equal\n{about}")
     }
 }
 
@@ -121,13 +133,16 @@ fn different(a: &Map<String, Value>, b: &Map<String, Value>) -> (Vec<Difference>
     (differ, equal.len())
 }
 
-/// Whether two values are equal; 5 and 5.0 are.
+/// Whether two values are equal; 5 and 5.0 are. Whole numbers are compared digit by digit: floats do not hold all
+/// seeds.
 fn are_equal(a: &Value, b: &Value) -> bool {
     match (a, b) {
         (Value::Array(a), Value::Array(b)) => {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| are_equal(a, b))
         }
-        (Value::Number(one), Value::Number(other)) => a == b || one.as_f64() == other.as_f64(),
+        (Value::Number(one), Value::Number(other)) if one.is_f64() || other.is_f64() => {
+            one.as_f64() == other.as_f64()
+        }
         _ => a == b,
     }
 }

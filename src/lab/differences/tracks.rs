@@ -12,9 +12,16 @@ use crate::scenario::trajectories::Tracks;
 /// Two positions of a person at the same time differ if they are farther apart than this, meters.
 const DIFFER: f64 = 1e-9;
 
+/// What is not compared.
+const ABOUT: &str =
+    "Compared: who is where and when, by id. Other columns, such as densities and speeds, are not.";
+
 /// The differences between two trajectory files: totals, and the positions of people with the same id at the same time.
 pub fn of_tracks(a: &Tracks, b: &Tracks) -> Differences {
-    let mut differences = Differences::default();
+    let mut differences = Differences {
+        about: ABOUT.to_owned(),
+        ..Differences::default()
+    };
     differences.add_results(&totals(a), &totals(b));
     differences.results.extend(positions(a, b));
     differences
@@ -39,7 +46,8 @@ fn totals(tracks: &Tracks) -> Map<String, Value> {
     all.as_object().cloned().unwrap_or_default()
 }
 
-/// The distances between people with the same id at the same times, as the value in `b`; the value in `a` is 0.
+/// The rows of each file for whose id and time the other one has no row, and the distances between people with the same
+/// id at the same times as the value in `b`.
 fn positions(a: &Tracks, b: &Tracks) -> Vec<Difference> {
     let rows = |tracks: &Tracks| -> BTreeMap<(i64, i64), Vector> {
         let frames = (0..tracks.frames.len()).flat_map(|k| {
@@ -63,23 +71,28 @@ fn positions(a: &Tracks, b: &Tracks) -> Vec<Difference> {
             since = Some(micros as f64 * 1e-6); // in the order of time
         }
     }
-    let value = |name: &str, value: Value| Difference {
+    let difference = |name: &str, a: Value, b: Value| Difference {
         name: name.to_owned(),
-        a: Value::Null,
-        b: value,
+        a,
+        b,
     };
-    if count == 0 {
-        return vec![value("positions of a person at the same time", json!(0))];
+    let alone = [a.len(), b.len()].map(|rows| rows as u64 - count);
+    let mut found = Vec::new();
+    if alone != [0, 0] {
+        let name = "rows with an id and time that the other file lacks";
+        found.push(difference(name, json!(alone[0]), json!(alone[1])));
     }
     let Some(since) = since else {
-        return Vec::new();
+        return found;
     };
-    vec![
+    let value = |name: &str, value: Value| difference(name, Value::Null, value);
+    found.extend([
         value("positions differ from time [s]", json!(since)),
         value("largest distance [m]", json!(largest)),
         value(
             "root mean square distance [m]",
             json!((squares / count as f64).sqrt()),
         ),
-    ]
+    ]);
+    found
 }
