@@ -153,8 +153,33 @@ fn two_agents_that_meet_in_a_narrow_corridor_block_each_other() {
     let group = only(&ended(&document));
     assert_eq!(
         (group.agents, group.cause.as_str()),
-        (2, "agents that walk the other way block it")
+        (
+            2,
+            "agents that walk the other way block it; in narrow places that can last for good"
+        )
     );
+}
+
+#[test]
+fn two_agents_that_are_exactly_head_on_are_told_from_those_without_room_to_pass() {
+    let corridor = |shift: f64| {
+        json!({
+            "profile": "sph",
+            "duration_secs": 50,
+            "stop": {"when_empty": true},
+            "walkable_area": [[[[0, 0], [12, 0], [12, 1.7], [0, 1.7]]]],
+            "agents": [
+                {"position": [1, 0.85], "goal": [11, 0.85], "remove_within": 0.6, "radius": 0.24},
+                {"position": [11, 0.85 + shift], "goal": [1, 0.85], "remove_within": 0.6, "radius": 0.24}
+            ]
+        })
+    };
+    let group = only(&ended(&corridor(0.0)));
+    let cause = "two agents exactly head-on block each other; move one by a centimeter";
+    assert_eq!((group.agents, group.cause.as_str()), (2, cause));
+    // The advice helps.
+    let moved = ended(&corridor(0.01));
+    assert_eq!(moved.simulation.outcome().arrivals.len(), 2);
 }
 
 #[test]

@@ -48,6 +48,7 @@ mod run_text;
 mod scenario_geometry;
 mod seeing;
 mod stability;
+mod strangers;
 mod stress;
 mod study_robustness;
 mod suites;

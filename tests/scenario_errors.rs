@@ -80,7 +80,7 @@ const BROKEN_TEXTS: &[[&str; 2]] = &[
     ],
     [
         "{\"seed\": NaN}",
-        "f.json: line 1, column 10: expected a value: a number, text in quotes, true, false, null, a list or an object",
+        "f.json: line 1, column 10: `NaN` is no number of JSON: leave the key out for its default",
     ],
     [
         "{\"seed\": 1, \"seed\": 2}",

@@ -20,7 +20,7 @@ use crate::runs::case::Source;
 use crate::runs::checkpoint::Checkpoint;
 use crate::runs::drive::{End, Observer, Run};
 use crate::runs::outputs::Outputs;
-use crate::scenario::{Scenario, Setting, automatic_step, in_units};
+use crate::scenario::{Scenario, Setting, automatic_step, doubtful_radius, in_units};
 
 /// `sandbox evacuation|crossing|concert|plaza|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
@@ -155,6 +155,13 @@ fn warn_of_the_step(scene: &Scene) {
             Some(automatic) => format!("--time-step auto uses {}", three_digits(automatic)),
             None => "no allowed step is short enough: lower the stiffness or raise the masses"
                 .to_owned(),
+        };
+        let advice = match doubtful_radius(scene) {
+            Some(radius) => format!(
+                "such agents, with a radius of {} m, are lighter than people: check `radius`",
+                three_digits(radius)
+            ),
+            None => advice,
         };
         talk(&format!(
             "warning: time_step_secs {step} is {} times {}, the largest step at which a crowd comes to rest; {advice}",

@@ -6,6 +6,7 @@
 
 mod failure;
 mod terminal;
+mod tips;
 mod values;
 
 mod arguments;
@@ -79,6 +80,9 @@ pub fn main_of<A: Parser>(
         Ok(arguments) => run(arguments).err(),
         Err(error) => {
             error.print().ok();
+            if let Some(tip) = tips::of(&error) {
+                talk(&tip);
+            }
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
@@ -96,7 +100,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Crossing(options) => drive::run(&Source::named("crossing"), &options),
         Command::Concert(options) => drive::run(&Source::named("concert"), &options),
         Command::Plaza(options) => drive::run(&Source::named("plaza"), &options),
-        Command::Run { file, options } => drive::run(&Source::File(file), &options),
+        Command::Run { file, options } => drive::run(&Source::at(file), &options),
         Command::Resume(options) => drive::resume(&options),
         Command::Inspect(options) => inspect::run(&options),
         Command::Draw(options) => draw::run(&options),

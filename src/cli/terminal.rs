@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::failure::Failure;
 use crate::scenario::quote::printable;
+use crate::scenario::tidy;
 
 /// Writes results to stdout. A closed pipe (`| head`) is not an error.
 pub fn say(text: impl AsRef<[u8]>) -> Result<(), Failure> {
@@ -31,7 +32,8 @@ pub fn tell(
     }
 }
 
-/// Writes a line to stderr, with control characters escaped. Errors are ignored: the exit code tells of failures.
+/// Writes a line to stderr, with short numbers and control characters escaped. Errors are ignored: the exit code tells
+/// of failures.
 pub fn talk(line: &str) {
-    writeln!(std::io::stderr(), "{}", printable(line)).ok();
+    writeln!(std::io::stderr(), "{}", printable(&tidy(line))).ok();
 }

@@ -8,9 +8,9 @@ use crate::output::html::{escape, facts};
 use crate::output::table::{Cell, Table};
 use crate::runs::drive::End;
 use crate::runs::summary::{JourneyResult, PlaceResult};
-use crate::scenario::Scenario;
 use crate::scenario::measurements::Quantity;
 use crate::scenario::quote::shown;
+use crate::scenario::{Scenario, tidy};
 
 /// Longer values of settings are cut; the scenario below them is whole.
 const LONGEST: usize = 160;
@@ -62,7 +62,9 @@ pub fn results(report: &Value, scenario: Option<&Scenario>) -> String {
         &pairs(&digests.collect::<Vec<_>>()).html(),
     );
     let settings = facts(&of("settings")).into_iter();
-    let settings: Vec<_> = settings.map(|(key, value)| (key, cut(value))).collect();
+    let settings: Vec<_> = settings
+        .map(|(key, value)| (key, cut(tidy(&value))))
+        .collect();
     html += &format!(
         "<details><summary>Settings ({})</summary>\n{}</details>\n",
         settings.len(),

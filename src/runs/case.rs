@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 use super::drive::{End, Observer, Run};
 use super::error::RunError;
@@ -13,6 +14,8 @@ use super::job::{Job, Progress};
 use super::memory::Memory;
 use super::summary::Summary;
 use crate::engine::simulation::Fault;
+use crate::scenario::floor_plan::is_plan;
+use crate::scenario::kinds;
 use crate::scenario::quote::shown;
 use crate::scenario::{
     Draft, Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, read_text,
@@ -39,7 +42,13 @@ impl Source {
         Self::shipped(name).unwrap_or_else(|| Self::File(PathBuf::from(name)))
     }
 
-    /// The scenario's text, and the name of its file for messages.
+    /// The same for a path as typed.
+    pub fn at(path: PathBuf) -> Self {
+        let shipped = path.to_str().and_then(Self::shipped);
+        shipped.unwrap_or(Self::File(path))
+    }
+
+    /// The scenario's text, and the name of its file for messages. A floor plan is a scenario without people.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -48,7 +57,19 @@ impl Source {
             Self::BuiltIn(path) => (path, built_in(path)),
             Self::File(path) => (path, None),
         };
-        let text = known.map_or_else(|| read_text(path), |text| Ok(text.to_owned()))?;
+        let text = match (known, path.file_name()) {
+            (Some(text), _) => text.to_owned(),
+            (None, Some(name)) if is_plan(path) && path.is_file() => {
+                json!({ "walkable_area": name.to_string_lossy() }).to_string()
+            }
+            _ => match kinds::of_name(path).filter(|_| path.is_file()) {
+                None => read_text(path)?,
+                Some(what) => {
+                    let (file, reason) = (path.display().to_string(), what.to_owned());
+                    return Err(ScenarioError::Unreadable { file, reason });
+                }
+            },
+        };
         Ok((text, path.display().to_string()))
     }
 }

@@ -32,7 +32,10 @@ mod read;
 
 pub use build::need::{Need, in_units};
 pub use build::numerics::automatic_step;
+pub use build::units::doubtful_radius;
 pub use build::view::View;
+pub use error::kinds;
+pub use error::numbers::tidy;
 pub use error::{Problem, ScenarioError, in_plain_words, quote, suggestion};
 pub use file::Stop;
 pub use file::listed::{SettingDoc, nested_settings, settings};

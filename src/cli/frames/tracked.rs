@@ -29,7 +29,10 @@ pub fn open(
     geometry: Option<&Path>,
     wanted: &[&str],
 ) -> Result<Run, Failure> {
-    let tracks = inputs::tracks(path, options)?;
+    let tracks = inputs::tracks(path, options).map_err(|failure| match failure {
+        Failure::Read(error) => Failure::Read(error.with_rate_option("--trajectory-fps")),
+        other => other,
+    })?;
     let site = inputs::site(path, geometry, &tracks)?;
     let scene = Scene::with_obstacles(site.walls.obstacles().to_vec());
     let corners: Vec<Vector> = scene.walls.iter().map(|wall| wall.start).collect();

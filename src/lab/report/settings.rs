@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::output::document::Block;
 use crate::output::table::Table;
-use crate::scenario::{Scenario, settings};
+use crate::scenario::{Scenario, settings, tidy};
 
 /// Keys that the report shows elsewhere.
 const ELSEWHERE: [&str; 3] = ["name", "description", "preset"];
@@ -33,7 +33,7 @@ pub fn changed(scenario: &Scenario) -> Block {
         let is_simple = !value.is_object() && !value.is_array() && !value.is_null();
         let value = match value {
             Value::String(text) => text,
-            value => value.to_string(),
+            value => tidy(&value.to_string()),
         };
         let default = doc.default.unwrap_or_else(|| "–".to_owned());
         let differs = is_simple && value != default && !is_equal(&value, &default);

@@ -6,7 +6,9 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::runs::case::Source;
-use crate::scenario::{Problem, ScenarioError, built_in, in_plain_words, input, read_document};
+use crate::scenario::{
+    Problem, ScenarioError, built_in, in_plain_words, input, kinds, read_document,
+};
 
 /// The text of a study, a suite or a calibration, and where it comes from.
 #[derive(Debug, Clone)]
@@ -78,6 +80,13 @@ impl Written {
     /// The text is not JSON, or a name or type is wrong.
     pub fn parsed<T: DeserializeOwned>(&self, needs: &str) -> Result<(Value, T), ScenarioError> {
         let document = read_document(&self.text, &self.file())?;
+        if kinds::is_scenario(&document) {
+            let reason = format!(
+                "is a scenario, `sandbox run FILE` runs it; here a study is needed: an object with {needs}, which may \
+                 name this file"
+            );
+            return Err(self.invalid(Problem::new("", reason)));
+        }
         let keys = self.keys(needs).map_err(|problem| self.invalid(problem))?;
         Ok((document, keys))
     }

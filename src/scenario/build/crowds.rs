@@ -6,6 +6,7 @@ use crate::engine::math::{Vector, bounds};
 use crate::engine::packing::{self, Body, Space};
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Region;
+use crate::scenario::build::crossed;
 use crate::scenario::build::off_floor::OFF;
 use crate::scenario::build::people::Population;
 use crate::scenario::build::surroundings;
@@ -18,6 +19,8 @@ use crate::scenario::keys::shapes::Outline;
 const MOST_COUNTS: usize = 4;
 /// Crowds are noted if less than this part of their area is free floor.
 const MOSTLY_OFF: f64 = 0.25;
+/// Walls are looked for in areas of which more than this part is free floor; others wind around them.
+const MOSTLY_FREE: f64 = 0.5;
 /// The share of radii that may be smaller than assumed.
 const RARE: f64 = 1e-6;
 
@@ -91,8 +94,14 @@ impl Population<'_> {
             );
             Problem::new("", reason)
         })?;
-        self.notes.extend(divided(&areas, &places, place));
         let drawn = surroundings::area(given.area.rings()).under("area")?.area();
+        let walls = &self.scene.walls;
+        self.notes.extend(match areas.len() {
+            1 if size > MOSTLY_FREE * drawn => crossed::note(walls, &given.area, &places, place),
+            _ => divided(&areas, &places, place),
+        });
+        self.notes
+            .extend(crossed::beyond(walls, &given.area, place));
         if size < MOSTLY_OFF * drawn {
             self.notes.push(format!(
                 "{place}.area: {size:.1} m² of its {drawn:.1} m² are free floor, and all its agents start there; check \

@@ -1,4 +1,5 @@
-//! Notes on scenarios that are valid but doubtful: units, speeds, journeys without end, no agents.
+//! Notes on scenarios that are valid but doubtful: a plan in another unit, journeys without end, no agents. Others are
+//! in `units.rs`, `eclipsed.rs`, `through_walls.rs` and `crossed.rs`.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -10,6 +11,7 @@ use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Group, Scene};
 use crate::engine::ways::nearest_on;
 use crate::scenario::build::journeys::TO_EXIT;
+use crate::scenario::build::{eclipsed, through_walls, units};
 use crate::scenario::error::quote::shown;
 use crate::scenario::file::File;
 use crate::scenario::keys::people::Spacing;
@@ -23,8 +25,6 @@ const SIDE_IF_EMPTY: f64 = 100.0;
 const EMPTY: f64 = 0.01;
 /// Agents enter on the line of an exit if theirs is nearer, meters.
 const AT_EXIT: f64 = 0.1;
-/// Crowds do not run faster, m/s.
-const FAST: f64 = 4.0;
 
 /// Groups of which this share walks are walking groups.
 const SOME: f64 = 0.05;
@@ -40,7 +40,9 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
     }
     let floor = floor(keys, &scene.walls, entering).into_iter();
     floor
-        .chain(speeds(keys, scene))
+        .chain(units::notes(keys, scene))
+        .chain(eclipsed::notes(scene))
+        .chain(through_walls::note(scene))
         .chain(endless(scene))
         .chain(coincident(scene))
         .chain(peaks(keys))
@@ -165,29 +167,6 @@ fn floor(keys: &File, walls: &Walls, entering: u64) -> Option<String> {
     })
 }
 
-/// Notes on preferred speeds above those of running crowds.
-fn speeds(keys: &File, scene: &Scene) -> Vec<String> {
-    let mut found = Vec::new();
-    let own = (scene.preferred_speed, "preferred_speed".to_owned());
-    found.push(own);
-    for (k, agent) in keys.agents.iter().enumerate() {
-        let speed = agent.preferred_speed;
-        found.extend(speed.map(|speed| (speed, format!("agents[{k}].preferred_speed"))));
-    }
-    for group in &scene.groups {
-        let speed = group.traits.preferred_speed.as_ref();
-        let place = || format!("preferred_speed of {}", shown(&group.name));
-        found.extend(speed.map(|speed| (speed.mean(), place())));
-    }
-    let fast = found.into_iter().filter(|(speed, _)| *speed > FAST);
-    let note = |(speed, place)| {
-        format!(
-            "{place}: {speed} m/s is faster than crowds run: check that the unit is m/s (walking is 1.3 m/s)"
-        )
-    };
-    fast.map(note).collect()
-}
-
 /// A note on agents that start at the same point as another.
 fn coincident(scene: &Scene) -> Option<String> {
     let positions = scene.agents.iter().map(|agent| agent.position);
@@ -292,13 +271,14 @@ fn unused(scene: &Scene) -> Option<String> {
     ))
 }
 
-/// Notes on doors that are closed for the whole run.
+/// Notes on doors and exits that are closed for the whole run.
 fn closed(keys: &File, scene: &Scene) -> Vec<String> {
     let journeys = &scene.journeys;
     let end = keys.duration_secs.unwrap_or(f64::INFINITY);
-    let doors = journeys.places.iter().zip(0..);
-    let doors = doors.filter(|(place, _)| matches!(place.kind, Kind::Door(_)));
-    let note = |(k, (place, number)): (usize, (&Place, u16))| {
+    let places = || journeys.places.iter().zip(0..);
+    let doors = places().filter(|(place, _)| matches!(place.kind, Kind::Door(_)));
+    let exits = places().filter(|(place, _)| place.is_exit());
+    let note = |list: &str, (k, (place, number)): (usize, (&Place, u16))| {
         let changes = journeys.changes.iter().filter(|one| one.place == number);
         let first: Vec<&Change> = changes.take_while(|one| one.at < end).collect();
         let starts_closed = |one: &&Change| one.at <= 0.0 && one.kind == ChangeKind::Close;
@@ -306,13 +286,15 @@ fn closed(keys: &File, scene: &Scene) -> Vec<String> {
         let is_closed = first.iter().any(starts_closed) && !first.iter().any(opens);
         is_closed.then(|| {
             format!(
-                "doors[{k}]: `{}` is closed for the whole run: people to whose goal no other way leads wait before it; \
-                 check the times, or draw a wall in its place",
+                "{list}[{k}]: `{}` is closed for the whole run: people to whose goal no other way leads wait before \
+                 it; check the times, or draw a wall in its place",
                 shown(&place.name)
             )
         })
     };
-    doors.enumerate().filter_map(note).collect()
+    let doors = doors.enumerate().filter_map(|door| note("doors", door));
+    let exits = exits.enumerate().filter_map(|exit| note("exits", exit));
+    doors.chain(exits).collect()
 }
 
 /// Notes on the journeys after which agents stay on the floor, unless they end in waiting areas.

@@ -1,10 +1,12 @@
 //! The keys of a file → a scene: walls, places, ways and people, and what is refused or noted on the way.
 
 pub mod bodies;
+pub mod crossed;
 pub mod crowds;
 pub mod doors;
 pub mod doubts;
 pub mod draws;
+pub mod eclipsed;
 pub mod entrances;
 pub mod from;
 pub mod goals;
@@ -25,6 +27,8 @@ pub mod reached;
 pub mod slits;
 pub mod spots;
 pub mod surroundings;
+pub mod through_walls;
+pub mod units;
 pub mod view;
 pub mod waiting;
 pub mod wall_lists;

@@ -1,5 +1,7 @@
 //! Errors in scenarios, with their places.
 
+pub mod hints;
+pub mod kinds;
 pub mod numbers;
 pub mod quote;
 
@@ -84,7 +86,7 @@ impl Problem {
     pub fn new(path: impl Into<String>, reason: impl Into<String>) -> Self {
         Self {
             path: path.into(),
-            reason: reason.into(),
+            reason: numbers::tidy(&reason.into()),
         }
     }
 
@@ -134,7 +136,10 @@ pub fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> 
     known
         .into_iter()
         .filter(|name| given.len() < 2 * name.len()) // else more letters would have to go than it has
-        .map(|name| (slips(name), name))
+        .map(|name| match given.eq_ignore_ascii_case(name) {
+            true => (0, name),
+            false => (slips(name), name),
+        })
         .filter(|&(slips, name)| slips <= most && slips < name.len())
         .min()
         .map(|(_, name)| format!("; did you mean `{name}`?"))
@@ -158,7 +163,8 @@ pub fn in_plain_words(said: &str) -> String {
         true => plain(tail),
         false => plain(tail).replacen(", expected", &format!("{near} Expected"), 1),
     };
-    format!("{}{}{tail}", plain(head), shown(given))
+    let hint = hints::of_type(said, given);
+    format!("{}{}{tail}{hint}", plain(head), shown(given))
 }
 
 /// Splits a message of serde into the parts before, in and after the text that it quotes from the document.
@@ -181,7 +187,11 @@ fn around_the_given(said: &str) -> (&str, &str, &str) {
 }
 
 /// Phrases of serde and serde_json with their replacements.
-const WORDS: [(&str, &str); 24] = [
+const WORDS: [(&str, &str); 25] = [
+    (
+        "invalid type: unit variant, expected newtype variant",
+        "must be an object with the keys of the measurement: {\"density\": {\"at_secs\": 15}}",
+    ),
     ("expected f64", "expected a number"),
     ("expected u32", "expected a whole number from 0 to 2^32 - 1"),
     ("expected u64", "expected a whole number from 0 to 2^64 - 1"),

@@ -1,5 +1,6 @@
 //! GeoJSON (RFC 7946), in meters. The only file that names the geojson crate.
 
+use crate::scenario::error::kinds;
 use crate::scenario::error::quote::shown;
 use crate::scenario::error::suggestion;
 use geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
@@ -20,6 +21,11 @@ const NAME: &str = "name";
 /// The polygons of `text`. If `all_obstacles`, every polygon is an obstacle, of any kind.
 pub fn shapes(text: &str, all_obstacles: bool) -> Result<Vec<Shape>, FloorPlanError> {
     let document: Value = serde_json::from_str(text).map_err(|error| syntax(&error))?;
+    if kinds::is_scenario(&document) {
+        let reason = "it is a scenario, whose plan is in its `walkable_area`".to_owned();
+        let format = "GeoJSON";
+        return Err(FloorPlanError::Syntax { format, reason });
+    }
     refuse_degrees(&document)?;
     let mut shapes = Vec::new();
     let mut add = |one: &Feature, place: &str| {

@@ -11,6 +11,7 @@
 //! does not depend on how a plan is cut into pieces.
 //! Orientation, third coordinates, a closing point and repeated points do not matter.
 
+use crate::scenario::error::kinds;
 use crate::scenario::input;
 mod boundary;
 mod error;
@@ -63,6 +64,15 @@ pub fn read(path: &Path) -> Result<FloorPlan, FloorPlanError> {
     in_file(path, parse)
 }
 
+/// Whether the name of a file is that of a floor plan.
+pub fn is_plan(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default();
+    let plans = ["wkt", "geojson", "xml"];
+    plans
+        .into_iter()
+        .any(|plan| extension.eq_ignore_ascii_case(plan))
+}
+
 /// Reads a file in which every polygon is an obstacle.
 ///
 /// # Errors
@@ -102,6 +112,9 @@ fn in_file(
         path: path.to_owned(),
         error: Box::new(error),
     };
+    if let Some(what) = kinds::of_name(path).filter(|_| path.is_file()) {
+        return Err(within(FloorPlanError::Unreadable(what.to_owned())));
+    }
     let text =
         input::text(path).map_err(|error| within(FloorPlanError::Unreadable(error.to_string())))?;
     parse(&text).map_err(within)

@@ -6,7 +6,7 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 use serde_json::{Map, Number, Value};
 
 use crate::scenario::error::quote::shown;
-use crate::scenario::error::{Problem, ScenarioError, Under, in_plain_words};
+use crate::scenario::error::{Problem, ScenarioError, Under, hints, in_plain_words};
 use crate::scenario::keys::names::{OLD_KEYS, OldKey};
 
 /// Gives the last key of a path in a document its present name.
@@ -71,7 +71,8 @@ pub fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
             file: file.to_owned(),
             line,
             column,
-            reason: in_plain_words(said.strip_suffix(&place).unwrap_or(&said)),
+            reason: hints::of_syntax(text, line, column)
+                .unwrap_or_else(|| in_plain_words(said.strip_suffix(&place).unwrap_or(&said))),
         }
     })
 }

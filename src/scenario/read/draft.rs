@@ -5,6 +5,8 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::scenario::build::need::Need;
+use crate::scenario::error::kinds;
+use crate::scenario::error::numbers::tidy;
 use crate::scenario::error::{Problem, ScenarioError};
 use crate::scenario::file::File;
 use crate::scenario::read::plans::PlanFile;
@@ -50,6 +52,9 @@ impl Draft {
             settings: Vec::with_capacity(settings.len()),
         };
         let mut document = document::read(text, file)?;
+        if let Some(what) = kinds::not_a_scenario(&document) {
+            return Err(inputs.blame(Problem::new("", what)));
+        }
         document::rename_old_keys(&mut document).map_err(|problem| inputs.blame(problem))?;
         if document.is_object() && !settings.is_empty() {
             inputs.without = Some(document.clone());
@@ -98,6 +103,8 @@ impl Draft {
         let mut scenario = scenario.map_err(|problem| inputs.blame(problem))?;
         scenario.notes.extend(late);
         scenario.notes.extend(late::idle(&scenario.scene, ends));
+        scenario.notes.extend(late::short(&scenario.scene, ends));
+        scenario.notes = scenario.notes.iter().map(|note| tidy(note)).collect();
         scenario.changes = inputs.changes();
         Ok(scenario)
     }

@@ -1,5 +1,5 @@
-//! Notes on events, closures and measurements that begin after the end of a run, and on agents that never start walking
-//! in it.
+//! Notes on events, closures and measurements that begin after the end of a run, on agents that never start walking in
+//! it, and on runs in which nobody can leave.
 
 use serde_json::Value;
 
@@ -19,6 +19,8 @@ const BEGIN: [(&str, &str); 3] = [
 const MEASURED: [&str; 3] = ["at_secs", "from_secs", "start_secs"];
 /// The measurement of the flow until a time.
 const FLOW_UNTIL: [&str; 2] = ["flow_until", "until_secs"];
+/// Most agents are not faster than this quantile of their speeds.
+const FASTEST: f64 = 0.999;
 /// Most places in the note.
 const MOST_NAMED: usize = 4;
 
@@ -74,6 +76,43 @@ pub fn idle(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
     (!who.is_empty()).then(|| {
         let (who, end) = (who.join(", "), brief(end));
         format!("premovement_secs: agents that never start walking before the end of the run, {end} s: {who}")
+    })
+}
+
+/// A note if no agent is so near to the exit or goal at which it leaves that it gets there before `last`, in a run that
+/// ends at `end`, seconds. Agents walk straight there for this.
+pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
+    let is_all = scene.sources.is_empty() && scene.entrances.is_empty() && last > 0.0;
+    let needs = |agent: &NewAgent| {
+        let group = &scene.groups[usize::from(agent.group)];
+        let distance = match group.journey {
+            Some(journey) => {
+                let stages = &scene.journeys.journeys[usize::from(journey)].stages;
+                let places = stages.iter().flat_map(|stage| &stage.places);
+                let places = places.map(|&place| &scene.journeys.places[usize::from(place)]);
+                let exits = places.filter(|place| place.is_exit());
+                let ways =
+                    exits.map(|exit| (exit.nearest_point(agent.position) - agent.position).norm());
+                ways.reduce(f64::min)?
+            }
+            None => (agent.goal - agent.position).norm() - group.removal_radius?,
+        };
+        let drawn = group.traits.preferred_speed.as_ref();
+        let drawn = drawn.map(|speed| speed.quantile(FASTEST));
+        let speed = agent
+            .preferred_speed
+            .or(drawn)
+            .unwrap_or(scene.preferred_speed);
+        Some(distance / speed)
+    };
+    let needed: Option<Vec<f64>> = scene.agents.iter().map(needs).collect();
+    let least = needed.filter(|_| is_all)?.into_iter().reduce(f64::min)?;
+    (least > last).then(|| {
+        let (end, least) = (brief(end), least.ceil());
+        format!(
+            "duration_secs: nobody can leave within {end} s: those nearest to their exit walk for {least} s or more; \
+             durations are in seconds"
+        )
     })
 }
 

@@ -14,6 +14,8 @@ use crate::scenario::read::setting::Setting;
 
 /// The keys that may name a file.
 pub const KEYS: [&str; 2] = [WALKABLE_AREA, OBSTACLES];
+/// Words with which WKT begins.
+const WKT: [&str; 3] = ["POLYGON", "MULTIPOLYGON", "GEOMETRYCOLLECTION"];
 /// The key that gets the names in these files.
 const LABELS: &str = "labels";
 
@@ -38,11 +40,21 @@ pub fn fill(
         let name = match document.get(key) {
             Some(Value::String(name)) => name,
             None | Some(Value::Null | Value::Array(_)) => continue,
+            Some(Value::Object(plan)) if plan.contains_key("type") => {
+                let reason =
+                    "is GeoJSON: save it as a file that ends in .geojson, and give its name here";
+                return Err(Problem::new(key, reason));
+            }
             Some(_) => {
                 let reason = "must be a list of polygons, or the name of a file";
                 return Err(Problem::new(key, reason));
             }
         };
+        if WKT.iter().any(|word| name.trim_start().starts_with(word)) {
+            let reason =
+                "is WKT itself: save it as a file that ends in .wkt, and give its name here";
+            return Err(Problem::new(key, reason));
+        }
         let path = folder.join(name);
         let plan: FloorPlan = read(&path).map_err(|error| problem(error).under(key))?;
         files.push((key, path));

@@ -15,6 +15,15 @@ pub struct ReadError {
 }
 
 impl ReadError {
+    /// The same error for a command whose option for the frame rate has another name than `--fps`.
+    #[must_use]
+    pub fn with_rate_option(self, option: &str) -> Self {
+        Self {
+            problem: self.problem.replace("--fps", option),
+            ..self
+        }
+    }
+
     /// An error about the whole file.
     pub(super) fn file(path: &Path, problem: impl Into<String>) -> Self {
         Self {

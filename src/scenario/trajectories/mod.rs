@@ -128,6 +128,12 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
             "an HDF5 file, which is read with the feature `program` only; convert it to CSV",
         ));
     }
+    if start.starts_with(b"{") {
+        return Err(ReadError::file(
+            path,
+            "JSON, which has no trajectories: run a scenario with --trajectory FILE, and give that file",
+        ));
+    }
     if start.starts_with(RECORDING_MAGIC) {
         return Err(ReadError::file(
             path,

@@ -4,9 +4,10 @@ use super::{Aim, STUCK_AFTER, left};
 use crate::engine::agents::RADIUS_RANGE;
 use crate::engine::geometry::Walls;
 use crate::engine::journeys::{ChangeKind, Door, Kind};
-use crate::engine::math::{Vector, direction};
+use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::simulation::Simulation;
 use crate::engine::ways::side;
+use crate::scenario::error::numbers::tidy;
 use crate::scenario::error::quote::shown;
 use crate::scenario::measurements::passages::Openings;
 
@@ -17,11 +18,17 @@ const FOLLOWED: f64 = 3.0;
 /// An agent is ahead if its direction is within this cosine of the direction of walking: 60°. It walks the other way if
 /// the same is true of it.
 const CONE: f64 = 0.5;
+/// Two agents are exactly head-on if nothing leads them this far aside, meters and m/s.
+const HEAD_ON: f64 = 1e-4;
 /// Bodies that overlap a wall by less than this only touch it, meters.
 const TOUCH: f64 = 0.01;
 
 /// The likely cause, in words.
 pub fn of(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> String {
+    tidy(&likely(simulation, i, aim, doors))
+}
+
+fn likely(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> String {
     let (scene, frame) = (simulation.scene(), simulation.frame());
     let (agents, walls) = (frame.agents, frame.walls);
     let p = agents.position[i];
@@ -66,7 +73,13 @@ pub fn of(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> Stri
             )
         }
         Some(Blockers::Others) => "others block its way".to_owned(),
-        Some(Blockers::Against) => "agents that walk the other way block it".to_owned(),
+        Some(Blockers::HeadOn) => {
+            "two agents exactly head-on block each other; move one by a centimeter".to_owned()
+        }
+        Some(Blockers::Against) => {
+            "agents that walk the other way block it; in narrow places that can last for good"
+                .to_owned()
+        }
         None if pressing.is_empty() => "the forces on it cancel out".to_owned(),
         None => "it walks against a wall".to_owned(),
     }
@@ -157,6 +170,8 @@ enum Blockers {
     Others,
     /// Some of them walk the other way.
     Against,
+    /// One that comes exactly toward it, on the same line.
+    HeadOn,
 }
 
 /// Whether agents within `far` times the sum of the radii stand before agent `i`, which walks to `aim`, first in the
@@ -194,10 +209,41 @@ fn blockers(
     if found.is_empty() {
         return None;
     }
+    let is_head_on = match found[..] {
+        [(j, from)] => are_head_on(simulation, [i, j], (from, ahead)),
+        _ => false,
+    };
     Some(match found.iter().any(against) {
+        true if is_head_on => Blockers::HeadOn,
         true => Blockers::Against,
         false => Blockers::Others,
     })
+}
+
+/// Whether agent j stands exactly on the line ahead of agent i, seen `from` there, and walls leave room for both to
+/// pass.
+fn are_head_on(
+    simulation: &Simulation,
+    [i, j]: [usize; 2],
+    (from, ahead): (Vector, Vector),
+) -> bool {
+    let frame = simulation.frame();
+    let (agents, walls) = (frame.agents, frame.walls);
+    let way = agents.position[j] - from;
+    let speeds = [agents.velocity[i], agents.velocity[j]];
+    let aside = speeds.map(|speed| ahead.perp(&speed).abs());
+    let (p, width) = (
+        agents.position[i],
+        2.0 * (agents.radius[i] + agents.radius[j]),
+    );
+    let free = |side: Vector| {
+        let end = p + side * width;
+        let crossed = walls.first_crossing(p, end, &walls.near_any(&[p, end], 0.0));
+        crossed.map_or(width, |(share, _)| share * width)
+    };
+    let side = perpendicular(ahead);
+    let is_on_line = ahead.perp(&way).abs() < HEAD_ON && aside[0].max(aside[1]) < HEAD_ON;
+    is_on_line && free(side) + free(-side) > width
 }
 
 /// How many agents have left at an aim during the time after which agents are stuck.

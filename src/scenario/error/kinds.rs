@@ -1,0 +1,76 @@
+//! What a file is that was given in place of another one, and what to do with it.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+/// Endings of files, with what they are.
+const ENDINGS: [(&[&str], &str); 4] = [
+    (
+        &["dxf", "dwg", "ifc"],
+        "drawings of CAD programs are not read: make GeoJSON or WKT of it (docs/recipes.md says how)",
+    ),
+    (
+        &["png", "jpg", "jpeg", "pdf", "svg", "gif"],
+        "a picture is not read: give the outlines as WKT, GeoJSON or JuPedSim XML",
+    ),
+    (
+        &["xlsx", "xls", "ods", "docx", "zip"],
+        "this kind of file is not read: scenarios are JSON, plans WKT, GeoJSON or JuPedSim XML",
+    ),
+    (
+        &["csv", "sqlite", "db", "h5", "rrd"],
+        "holds a run that is over: `sandbox measure`, `draw` and `page` read it, and a scenario takes its people with \
+         `from`",
+    ),
+];
+
+/// What a file with this name is, if it is neither a scenario nor a plan.
+pub fn of_name(path: &Path) -> Option<&'static str> {
+    let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+    let found = ENDINGS
+        .iter()
+        .find(|(endings, _)| endings.contains(&ending.as_str()));
+    found.map(|(_, what)| *what)
+}
+
+/// What a JSON document is, if it is not a scenario.
+pub fn not_a_scenario(document: &Value) -> Option<&'static str> {
+    let has = |key: &str| !document[key].is_null();
+    let some = |keys: &[&str]| keys.iter().any(|key| has(key));
+    let is_geojson = document["type"].is_string() && some(&["features", "geometry", "coordinates"]);
+    match () {
+        () if is_geojson => Some(
+            "is a floor plan in GeoJSON, not a scenario: name it in the `walkable_area` of a scenario, or give it \
+             with --geometry; a file that ends in .geojson can be drawn by itself",
+        ),
+        () if has("parameters") && has("fit") => {
+            Some("is a calibration, not a scenario: `sandbox calibrate FILE` runs it")
+        }
+        () if has("scenario") && some(&["list", "grid", "seeds", "cases"]) => {
+            Some("is a study, not a scenario: `sandbox sweep FILE` runs it")
+        }
+        () if has("state_sha256") && has("metrics") => Some(
+            "is the result of a run, not a scenario: its `settings` are one; `sandbox compare A B` compares results",
+        ),
+        () if has("estimate") => {
+            Some("is an estimate, not a scenario: `sandbox compare A B` compares two")
+        }
+        () => None,
+    }
+}
+
+/// Whether a JSON document is a scenario, by its keys.
+pub fn is_scenario(document: &Value) -> bool {
+    const KEYS: [&str; 7] = [
+        "walkable_area",
+        "crowds",
+        "grids",
+        "agents",
+        "exits",
+        "sources",
+        "entrances",
+    ];
+    let has = |key: &str| !document[key].is_null();
+    !has("scenario") && !has("fit") && KEYS.iter().any(|key| has(key))
+}

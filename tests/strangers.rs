@@ -1,0 +1,198 @@
+//! What people type who do not know the program: slips of JSON, units, wrong files and words of other programs. Each is
+//! answered with what to do (tests/data/strangers.json).
+
+use std::fs;
+
+use sandbox::scenario::Scenario;
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
+
+use crate::common::program::{run, stderr};
+
+/// A slip, and a part of the answer.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Slip {
+    /// The text of a scenario.
+    Text { text: String, said: String },
+    /// Changes of a room, by their paths.
+    Change {
+        change: Map<String, Value>,
+        said: String,
+    },
+    /// A command line; `{}` is the folder with the files.
+    Typed { typed: Vec<String>, said: String },
+}
+
+/// A room of 12 × 10 m with an exit and 20 people.
+fn room() -> Value {
+    json!({
+        "profile": "steer+sph",
+        "walkable_area": [[[[0, 0], [12, 0], [12, 10], [0, 10]]]],
+        "exits": [{"name": "east", "line": [[12, 4], [12, 6]]}],
+        "crowds": [{"area": [[0, 0], [11, 0], [11, 10], [0, 10]], "number": 20}],
+        "duration_secs": 120,
+        "stop": {"when_empty": true}
+    })
+}
+
+fn changed(changes: &Map<String, Value>) -> String {
+    let mut room = room();
+    for (path, value) in changes {
+        let (parent, key) = path.rsplit_once('/').unwrap();
+        room.pointer_mut(parent).unwrap()[key] = value.clone();
+    }
+    room.to_string()
+}
+
+/// The error or the notes of a scenario.
+fn answer(text: &str) -> String {
+    match Scenario::parse(text, "room.json", &[]) {
+        Ok(scenario) => scenario.notes.join("\n"),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// Whether a number has more than six significant digits, and more than two decimals.
+fn is_long(word: &str) -> bool {
+    let word = word.trim_matches(|c: char| !c.is_ascii_digit());
+    let Some((whole, decimals)) = word.split_once('.') else {
+        return false;
+    };
+    let are_digits = [whole, decimals]
+        .iter()
+        .all(|part| part.bytes().all(|b| b.is_ascii_digit()));
+    let digits = format!("{whole}{decimals}");
+    are_digits && decimals.len() > 2 && digits.trim_start_matches('0').len() > 6
+}
+
+#[test]
+fn every_slip_of_a_stranger_is_answered_with_what_to_do() {
+    let slips: Vec<Slip> = serde_json::from_str(include_str!("data/strangers.json")).unwrap();
+    assert!(slips.len() > 60);
+    assert_eq!(answer(&room().to_string()), "");
+    let folder = tempfile::tempdir().unwrap();
+    let files = [
+        ("room.json", room().to_string()),
+        ("p.dxf", "  0\nSECTION\n".to_owned()),
+        ("p.png", "no picture".to_owned()),
+        ("t.csv", "id,frame,x,y\n1,0,0,0\n".to_owned()),
+        (
+            "t.txt",
+            "# id frame x/m y/m\n1 0 0 0\n1 1 0.1 0\n".to_owned(),
+        ),
+    ];
+    for (name, text) in &files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let place = folder.path().to_str().unwrap();
+    for slip in &slips {
+        let (about, found, said) = match slip {
+            Slip::Text { text, said } => (text.clone(), answer(text), said),
+            Slip::Change { change, said } => (
+                Value::from(change.clone()).to_string(),
+                answer(&changed(change)),
+                said,
+            ),
+            Slip::Typed { typed, said } => {
+                let arguments: Vec<String> =
+                    typed.iter().map(|one| one.replace("{}", place)).collect();
+                let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+                let output = run(&arguments);
+                assert_eq!(output.status.code(), Some(2), "{typed:?}");
+                (typed.join(" "), stderr(&output).replace(place, "{}"), said)
+            }
+        };
+        assert!(
+            found.contains(said),
+            "{about}\nanswer: {found}\nexpected: {said}"
+        );
+        let long: Vec<&str> = found
+            .split_whitespace()
+            .filter(|word| is_long(word))
+            .collect();
+        assert!(long.is_empty(), "{about}: {long:?}");
+    }
+}
+
+#[test]
+fn numbers_of_errors_have_few_digits() {
+    // Ways are checked from random places, and bodies have random radii.
+    let mut narrow = room();
+    narrow["walkable_area"] = json!([[
+        [[0, 0], [12, 0], [12, 10], [0, 10]],
+        [[6, 0], [6.2, 0], [6.2, 4.9], [6, 4.9]],
+        [[6, 5.3], [6.2, 5.3], [6.2, 10], [6, 10]]
+    ]]);
+    narrow["crowds"][0]["area"] = json!([[0.1, 0.1], [5, 0.1], [5, 9], [0.1, 9]]);
+    for (setting, value) in [
+        ("min_passage_width", json!(0.8)),
+        ("duration_secs", json!(100.123456789)),
+    ] {
+        let mut one = narrow.clone();
+        one[setting] = value;
+        let said = answer(&one.to_string());
+        let long: Vec<&str> = said
+            .split_whitespace()
+            .filter(|word| is_long(word))
+            .collect();
+        assert!(long.is_empty(), "{said}");
+    }
+    narrow["min_passage_width"] = json!(0.8);
+    assert!(answer(&narrow.to_string()).contains("narrower than `min_passage_width`, 0.8 m"));
+    assert!(is_long("0.42400000000000004") && is_long("(4.844568103040832,"));
+    assert!(!is_long("0.424") && !is_long("5268347.25") && !is_long("x.json"));
+}
+
+#[test]
+fn a_floor_plan_is_drawn_by_itself_and_a_built_in_scenario_runs_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    fs::write(
+        path("plan.wkt"),
+        "POLYGON((0 0, 12 0, 12 10, 0 10, 0 0), (5 4, 5 6, 7 6, 7 4, 5 4))",
+    )
+    .unwrap();
+    let ring = json!([[[0, 0], [12, 0], [12, 10], [0, 10], [0, 0]]]);
+    fs::write(
+        path("plan.geojson"),
+        json!({"type": "Polygon", "coordinates": ring}).to_string(),
+    )
+    .unwrap();
+    for plan in ["plan.wkt", "plan.geojson"] {
+        let out = path(&format!("{plan}.svg"));
+        let output = run(&["draw", &path(plan), "--out", &out]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        // The floor is 12 m × 10 m, with a margin around it.
+        let drawing = fs::read_to_string(&out).unwrap();
+        assert!(
+            drawing.contains("<polygon") || drawing.contains("<path"),
+            "{plan}: no walls"
+        );
+        assert!(
+            drawing.contains(">12<") && drawing.contains(">10<"),
+            "{plan}: no axes"
+        );
+    }
+    let by_name = run(&["run", "evacuation", "--until", "1", "--json"]);
+    let command = run(&["evacuation", "--until", "1", "--json"]);
+    let digest = |output: &std::process::Output| {
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        report["state_sha256"].clone()
+    };
+    assert_eq!(digest(&by_name), digest(&command));
+}
+
+#[test]
+fn a_run_says_which_motivation_it_used() {
+    let first = |settings: &[&str]| {
+        let typed = [&["evacuation", "--until", "0.2"], settings].concat();
+        let said = String::from_utf8(run(&typed).stdout).unwrap();
+        said.lines().next().unwrap().to_owned()
+    };
+    let calm = first(&["--profile", "steer+sph"]);
+    assert!(calm.contains("(steer+sph, motivation 0), seed 1"), "{calm}");
+    let hurried = first(&["--profile", "steer+sph", "--set", "motivation=1"]);
+    assert!(hurried.contains("(steer+sph, motivation 1)"), "{hurried}");
+    assert!(first(&[]).contains("(sph), seed 1"), "no law reads it");
+}
