@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 
+use crate::engine::scene::{Group, Scene};
 use crate::lab::reproduce::published_for;
 use crate::output::results as tables;
 use crate::runs::drive::{End, Run};
@@ -46,9 +47,10 @@ const MOST: usize = 3;
 pub fn text(run: &Run, verbose: bool) -> String {
     let summary = Summary::of(run);
     let mut text = format!(
-        "{} ({}), seed {}: {:.2} s in {} frames\n",
+        "{} ({}{}), seed {}: {:.2} s in {} frames\n",
         shown(&summary.scenario),
         shown(&summary.profile),
+        motivation(&run.scenario.scene),
         summary.seed,
         summary.time_secs,
         summary.frames,
@@ -72,6 +74,34 @@ pub fn text(run: &Run, verbose: bool) -> String {
         }
     }
     text
+}
+
+/// The motivation of the people, if a walking law reads it: ", motivation 0", with the zones that raise it.
+fn motivation(scene: &Scene) -> String {
+    let reads = |group: &&Group| {
+        let law = group.blend.walking_law().and_then(|law| law.headings());
+        law.is_some_and(|law| law.gap.longest() > 1.0 || law.gap.shortest() < 1.0)
+    };
+    let values = scene
+        .groups
+        .iter()
+        .filter(reads)
+        .map(|group| group.motivation);
+    let Some([low, high]) = values.fold(None, |ends: Option<[f64; 2]>, value| {
+        let [low, high] = ends.unwrap_or([value; 2]);
+        Some([low.min(value), high.max(value)])
+    }) else {
+        return String::new();
+    };
+    let zones = scene.journeys.zones.iter().map(|zone| zone.motivation);
+    let zones = match zones.fold(0.0, f64::max) {
+        most if most > low => format!(", {most} in zones"),
+        _ => String::new(),
+    };
+    match low == high {
+        true => format!(", motivation {low}{zones}"),
+        false => format!(", motivation {low} to {high}{zones}"),
+    }
 }
 
 /// How the run ended, the people out, the times that they took, the highest density, the longest queues and the agents
