@@ -37,6 +37,7 @@ mod from_data;
 mod front;
 mod geometry;
 mod geometry_robustness;
+mod heading_law;
 mod headings;
 mod identifiability;
 mod journeys;
