@@ -144,6 +144,24 @@ fn numbers_of_errors_have_few_digits() {
     assert!(!is_long("0.424") && !is_long("5268347.25") && !is_long("x.json"));
 }
 
+/// The width and the height of the polygon of this color in an SVG.
+fn extent(svg: &str, color: &str) -> Option<[f64; 2]> {
+    let line = svg
+        .lines()
+        .find(|line| line.starts_with("<polygon") && line.contains(color))?;
+    let points = line.split("points=\"").nth(1)?.split('"').next()?;
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let points = points
+        .split_whitespace()
+        .map(|point| point.split_once(',').unwrap());
+    let (x, y): (Vec<f64>, Vec<f64>) = points.map(|(x, y)| (number(x), number(y))).unzip();
+    let width = |all: &[f64]| {
+        let ends = [f64::min, f64::max].map(|of| all.iter().copied().reduce(of).unwrap());
+        ends[1] - ends[0]
+    };
+    Some([width(&x), width(&y)])
+}
+
 #[test]
 fn a_floor_plan_is_drawn_by_itself_and_a_built_in_scenario_runs_by_its_name() {
     let folder = tempfile::tempdir().unwrap();
@@ -163,16 +181,12 @@ fn a_floor_plan_is_drawn_by_itself_and_a_built_in_scenario_runs_by_its_name() {
         let out = path(&format!("{plan}.svg"));
         let output = run(&["draw", &path(plan), "--out", &out]);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        // The floor is 12 m × 10 m, with a margin around it.
+        // The floor is 12 m × 10 m, the pillar 2 m × 2 m.
         let drawing = fs::read_to_string(&out).unwrap();
-        assert!(
-            drawing.contains("<polygon") || drawing.contains("<path"),
-            "{plan}: no walls"
-        );
-        assert!(
-            drawing.contains(">12<") && drawing.contains(">10<"),
-            "{plan}: no axes"
-        );
+        let floor = extent(&drawing, "#FCFCF9").unwrap();
+        assert!((floor[0] / floor[1] - 1.2).abs() < 0.01, "{floor:?}");
+        let pillar = extent(&drawing, "#B0B0AC").map(|pillar| floor[0] / pillar[0]);
+        assert_eq!(pillar.map(f64::round), (plan == "plan.wkt").then_some(6.0));
     }
     let by_name = run(&["run", "evacuation", "--until", "1", "--json"]);
     let command = run(&["evacuation", "--until", "1", "--json"]);

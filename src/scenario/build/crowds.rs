@@ -100,14 +100,13 @@ impl Population<'_> {
             1 if size > MOSTLY_FREE * drawn => crossed::note(walls, &given.area, &places, place),
             _ => divided(&areas, &places, place),
         });
-        self.notes
-            .extend(crossed::beyond(walls, &given.area, place));
-        if size < MOSTLY_OFF * drawn {
-            self.notes.push(format!(
-                "{place}.area: {size:.1} m² of its {drawn:.1} m² are free floor, and all its agents start there; check \
-                 that it is where it should be"
-            ));
-        }
+        self.notes.extend(match size < MOSTLY_OFF * drawn {
+            true => Some(format!(
+                "{place}.area: {size:.1} m² of its {drawn:.1} m² are free floor, and all its agents start there; \
+                 check that it is where it should be"
+            )),
+            false => crossed::beyond(walls, &given.area, place),
+        });
         let agents = places.into_iter().zip(radii);
         self.scene
             .agents

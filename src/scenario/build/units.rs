@@ -94,7 +94,7 @@ fn slowed(scene: &Scene) -> Option<String> {
         .groups
         .iter()
         .all(|group| group.traits.preferred_speed.is_some());
-    (most < wanted && !are_own).then(|| {
+    (most < wanted && wanted <= FAST && !are_own).then(|| {
         format!(
             "max_speed: {} m/s is below the preferred speed of {} m/s: no agent walks faster than that",
             brief(most),
