@@ -6,6 +6,7 @@ use crate::engine::geometry::{Ring, Walls};
 use crate::engine::math::{Vector, bounds};
 use crate::scenario::error::numbers::brief;
 use crate::scenario::error::quote::to_centimeters;
+use crate::scenario::file::File;
 use crate::scenario::keys::shapes::Outline;
 
 /// This many people of a crowd are looked at.
@@ -16,10 +17,10 @@ const DIVIDED: f64 = 0.2;
 const INSIDE: f64 = 0.9;
 
 /// A note if the area of the crowd `name` reaches beyond the plan.
-pub fn beyond(walls: &Walls, area: &Outline, name: &str) -> Option<String> {
+pub fn beyond(keys: &File, area: &Outline, name: &str) -> Option<String> {
     let corners = corners(area)?;
-    let floors = walls.obstacles().iter().filter(|one| one.is_unbounded());
-    let [low, high] = bounds(floors.flat_map(|one| one.rings()).flatten().copied())?;
+    let floors = keys.walkable_area.iter().flatten().flatten();
+    let [low, high] = bounds(floors.flat_map(|ring| ring.0.iter().map(|&corner| corner.into())))?;
     let [from, to] = bounds(corners)?;
     let inside = to.zip_map(&high, f64::min) - from.zip_map(&low, f64::max);
     let share = inside.component_div(&(to - from));

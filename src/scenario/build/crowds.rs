@@ -105,7 +105,7 @@ impl Population<'_> {
                 "{place}.area: {size:.1} m² of its {drawn:.1} m² are free floor, and all its agents start there; \
                  check that it is where it should be"
             )),
-            false => crossed::beyond(walls, &given.area, place),
+            false => crossed::beyond(self.file, &given.area, place),
         });
         let agents = places.into_iter().zip(radii);
         self.scene
