@@ -84,6 +84,15 @@ impl Gate {
         nearer.count() as f64
     }
 
+    /// When the people that are nearer have passed, of whom each walks there, and all pass one after the other.
+    fn clear(&self, length: f64, flow: f64) -> f64 {
+        let mut nearer: Vec<i64> = self.bins.clone();
+        nearer.retain(|&other| other < bin(length));
+        nearer.sort_unstable();
+        let passed = |clear: f64, bin: i64| clear.max(0.1 * bin as f64 / USUAL) + 1.0 / flow;
+        nearer.into_iter().fold(0.0, passed)
+    }
+
     fn flow(&self, per_meter: f64) -> f64 {
         let flow = (5.0 * per_meter * self.width() + self.passed) / (5.0 + self.crowded);
         flow.max(0.05)
@@ -220,7 +229,7 @@ fn times_and_flows_follow_from_positions_and_choices() {
                 let mut seen = comparison.outlooks.iter();
                 let seen = seen.find(|one| one.step == Some(gate.step)).unwrap();
                 let (length, beyond) = (gate.distance(p), EXIT - gate.x);
-                let through = (length / OWN).max(gate.nearer(seen.length) / gate.flow(per_meter));
+                let through = (length / OWN).max(gate.clear(seen.length, gate.flow(per_meter)));
                 // Over the middle of the opening, or the shortest way itself.
                 let walked = match k == shortest {
                     true => gate.exact(p) - length,

@@ -5,6 +5,7 @@ pub mod bounded;
 pub mod busy;
 pub mod documents;
 pub mod errands;
+pub mod exits;
 pub mod floors;
 pub mod json_schema;
 pub mod legs;

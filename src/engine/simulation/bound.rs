@@ -15,6 +15,9 @@ const OBSERVED: f64 = 15.0;
 const EXPECTED: f64 = 5.0;
 /// The least flow that agents expect, P/(m s): about what Weidmann (1993) gives.
 pub(super) const FLOW_PER_METER: f64 = 1.3;
+/// That through exits before which no crowd has stood: about what `walk+sph` passes. With less, people would take the
+/// far exit although the near one is free.
+pub(super) const FLOW_PER_METER_OF_EXITS: f64 = 2.3;
 /// That through openings: about what Seyfried et al. (2009) measured at bottlenecks.
 pub(super) const FLOW_PER_METER_OF_OPENINGS: f64 = 1.9;
 /// If this many times as many agents stand within [`BEFORE`] meters of a place or of an opening as walk there at
@@ -66,6 +69,18 @@ impl Stream {
     pub fn nearer_than(&self, length: f64) -> u32 {
         let last = self.nearer.last().copied().unwrap_or(0);
         self.nearer.get(bin_of(length)).copied().unwrap_or(last)
+    }
+
+    /// The time until all agents bound for the line that are nearer than `length` meters have passed it, seconds: they
+    /// walk there at `speed`, and pass one after the other at a flow. An agent at that distance that walks no faster
+    /// waits only in a queue.
+    pub fn clear_after(&self, length: f64, speed: f64, flow: f64) -> f64 {
+        let bins = self.nearer.windows(2).take(bin_of(length)).enumerate();
+        let coming = bins.filter(|(_, counts)| counts[1] > counts[0]);
+        coming.fold(0.0, |clear: f64, (bin, counts)| {
+            let arrives = bin as f64 * BIN / speed;
+            clear.max(arrives) + f64::from(counts[1] - counts[0]) / flow
+        })
     }
 
     /// The number of agents bound for the line.

@@ -308,7 +308,8 @@ impl Chooser<'_> {
             shortest.unwrap_or(0.0)
         });
         let walking = length / speed;
-        let waiting = f64::from(ahead) / flow;
+        let of_others = speed.max(self.scene.preferred_speed);
+        let waiting = state.stream.clear_after(length, of_others, flow);
         let onward = onward / speed;
         Expected {
             walking_secs: walking,
@@ -328,7 +329,10 @@ impl Chooser<'_> {
             Kind::Queue(queue) => return f64::from(queue.servers) / queue.mean_service,
             Kind::Disk { .. } | Kind::Waiting(_) => return f64::INFINITY,
         };
-        let per_meter = self.crowd.flow_per_meter();
+        let per_meter = self
+            .crowd
+            .flow_per_meter()
+            .max(bound::FLOW_PER_METER_OF_EXITS);
         let expected = per_meter * bound::width(place).unwrap_or(0.0);
         state.stream.flow(expected.min(most)).min(most)
     }

@@ -66,24 +66,38 @@ impl Times<'_> {
             0.0
         };
         let waiting = match sees && self.scene.by_time() {
-            true => f64::from(self.ahead(step, length)) / self.flow(step),
+            true => self.waiting(step, length, speed),
             false => 0.0,
         };
         walking.max(waiting) + closed
     }
 
+    /// The time until those have passed the opening of a step that pass it before an agent that is `length` meters away
+    /// and walks at some speed, seconds.
+    fn waiting(&self, step: Step, length: f64, speed: f64) -> f64 {
+        let (speed, flow) = (speed.max(self.scene.preferred_speed), self.flow(step));
+        let own = self.progress.steps.get(step as usize);
+        let clear = own.map_or(0.0, |own| own.clear_after(length, speed, flow));
+        clear + f64::from(self.oncoming(step, length)) / flow
+    }
+
     /// The number of agents that pass the opening of a step before one that is `length` meters away: those bound for it
-    /// that are nearer, and those that come from the other side. Where two cannot pass each other, all of these.
+    /// that are nearer, and those that come from the other side.
     fn ahead(&self, step: Step, length: f64) -> u32 {
-        let streams = [step, step ^ 1].map(|step| self.progress.steps.get(step as usize));
-        let [Some(own), Some(other)] = streams else {
-            return 0;
-        };
-        let oncoming = match self.rooms.opening(step).width() < SINGLE_FILE {
-            true => other.bound(),
-            false => other.nearer_than(length.max(bound::BEFORE)),
-        };
-        own.nearer_than(length) + oncoming
+        let own = self.progress.steps.get(step as usize);
+        own.map_or(0, |own| own.nearer_than(length)) + self.oncoming(step, length)
+    }
+
+    /// Of the agents that come from the other side of an opening, those that pass it before one that is `length` meters
+    /// away. Where two cannot pass each other, all of these.
+    fn oncoming(&self, step: Step, length: f64) -> u32 {
+        let other = self.progress.steps.get((step ^ 1) as usize);
+        other.map_or(0, |other| {
+            match self.rooms.opening(step).width() < SINGLE_FILE {
+                true => other.bound(),
+                false => other.nearer_than(length.max(bound::BEFORE)),
+            }
+        })
     }
 
     /// The least times from each step to a goal, seconds, for agents that walk at the scene's speed.
