@@ -276,7 +276,7 @@ fn the_speed_is_the_root_mean_square_without_a_window() {
         run.simulation.evaluate().unwrap();
         run.measure();
         let frame = run.simulation.frame();
-        if frame.clock.frame() % 20 == 0 {
+        if frame.clock.frame().is_multiple_of(20) {
             let mut sums = [(0.0, [0.0; 2]); 12];
             for i in frame.agents.present() {
                 let (r, v) = (frame.agents.position[i], frame.agents.velocity[i]);

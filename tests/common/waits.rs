@@ -269,11 +269,10 @@ impl Plan {
             let Some(opening) = opening.filter(|&k| !openings[k].1) else {
                 return true;
             };
-            let further = ahead[all[0].1].iter().filter(|(other, _)| {
+            let mut further = ahead[all[0].1].iter().filter(|(other, _)| {
                 let number = openings.iter().position(|(one, ..)| one == other);
                 number.is_none_or(|number| number < opening)
             });
-            let mut further = further;
             !further.any(|(other, away)| {
                 waiting[other]
                     .last()
