@@ -158,8 +158,14 @@ fn people(simulation: &Simulation) -> BTreeMap<u32, Person> {
 
 /// What a person heeds of the next narrowing, found on the straight line to the next point of the way.
 fn narrowing(law: &Law, one: &Person, walls: &[[Point; 2]]) -> f64 {
-    // The narrowings of this floor: the gap, and the two ends of the narrower passage that face each other.
-    let places = [[[11.0, 5.4], [11.0, 6.6]], [[26.0, 5.1], [26.0, 6.9]]];
+    // The narrowings of this floor: the gap, the mouth of the passage, where it becomes narrower, and the exits.
+    let places = [
+        [[11.0, 5.4], [11.0, 6.6]],
+        [[20.0, 4.8], [20.0, 7.2]],
+        [[26.0, 5.1], [26.0, 6.9]],
+        [[34.0, 5.1], [34.0, 6.9]],
+        [[0.0, 5.0], [0.0, 7.0]],
+    ];
     let way = unit(one.wish);
     let to_aim = minus(one.aim, one.r);
     let far = (2.5 * law.of("narrowing_range")).min(to_aim[0].hypot(to_aim[1]) + 1.0);
