@@ -99,6 +99,61 @@ fn every_writer_names_its_path_on_a_full_disk() {
 }
 
 #[test]
+fn a_full_disk_leaves_pictures_and_reports_as_they_were() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = ["draw", "evacuation", "--at", "0.1"];
+    let moving = ["draw", "evacuation", "--until", "0.3", "--fps", "10"];
+    let egress = ["draw", "evacuation", "--egress"];
+    let report = ["report", "evacuation", "--until", "0.2"];
+    for (arguments, extension) in [
+        (&draw[..], "svg"),
+        (&draw, "png"),
+        (&draw, "pdf"),
+        (&moving, "gif"),
+        (&moving, "png"),
+        (&egress, "svg"),
+        (&report, "html"),
+        (&report, "pdf"),
+    ] {
+        let name = format!("full.{extension}");
+        let path = folder.path().join(&name);
+        let arguments = [arguments, &["--force", "--out", text(&path)]].concat();
+        for precious in [None, Some("precious")] {
+            if let Some(precious) = precious {
+                fs::write(&path, precious).unwrap();
+            }
+            let said = only_error(&arguments, &with_file_limit(4, &arguments));
+            assert!(
+                said.contains(text(&path)) && said.contains("File too large"),
+                "{said}"
+            );
+            assert_eq!(
+                fs::read_to_string(&path).ok().as_deref(),
+                precious,
+                "{arguments:?}"
+            );
+            let names = fs::read_dir(folder.path()).unwrap().flatten();
+            let names: Vec<_> = names.map(|entry| entry.file_name()).collect();
+            assert_eq!(
+                names,
+                Vec::from_iter(precious.map(|_| name.as_str())),
+                "{arguments:?}"
+            );
+        }
+        assert_eq!(
+            program::run(&arguments).status.code(),
+            Some(0),
+            "{arguments:?}"
+        );
+        assert!(fs::read(&path).unwrap() != b"precious", "{arguments:?}");
+        fs::remove_file(&path).unwrap();
+    }
+    // Devices are written in place.
+    let said = program::run(&[&draw[..], &["--force", "--out", "/dev/full"]].concat());
+    assert!(stderr(&said).contains("cannot write /dev/full: No space left on device"));
+}
+
+#[test]
 fn unprintable_results_are_an_error_and_unprintable_notes_are_not() {
     let full = || File::create("/dev/full").unwrap();
     let run = [

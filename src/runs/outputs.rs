@@ -1,12 +1,15 @@
 //! Output files: how they are written, and a check of all of them before the computation starts.
 //!
-//! Recordings, trajectories, tables and pictures are written in place. Checkpoints and finished cases are written
-//! atomically: under a temporary name in the same folder, then renamed. In both cases symbolic links are followed,
-//! devices and FIFOs are never replaced, and new files get permissions from the umask.
+//! Recordings, trajectories and pages of runs grow while the run goes on, and are written in place. All other files are
+//! written atomically: under a temporary name in the same folder, then renamed, so that a failure leaves an existing
+//! file as it was, and no half of a new one. In both cases symbolic links are followed, devices and FIFOs are never
+//! replaced, and new files get permissions from the umask.
 
-use std::fs::{self, File, Metadata};
-use std::io::{self, ErrorKind};
+use std::fs::{self, File, Metadata, Permissions};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+
+use tempfile::{NamedTempFile, TempPath};
 
 /// A chain of more symbolic links than this counts as a cycle.
 const MOST_LINKS: usize = 40;
@@ -18,6 +21,8 @@ pub enum Manner {
     InPlace,
     /// The file is replaced atomically, see [`write_whole`].
     Whole,
+    /// The same, but devices and FIFOs are written in place, see [`write_file`].
+    File,
     /// The file is one of several in a folder, or goes with another file. Checked only if it exists.
     Beside,
     /// A folder, created if missing.
@@ -174,7 +179,7 @@ impl Trial {
             }
             (manner, Some(about)) => {
                 refuse(&about, manner == Manner::Whole)?;
-                if manner == Manner::Whole {
+                if manner == Manner::Whole || (manner == Manner::File && about.is_file()) {
                     try_folder(folder_of(&fs::canonicalize(path)?))?;
                 }
                 // Opening a FIFO would wait for its reader.
@@ -218,18 +223,77 @@ impl Drop for Trial {
 /// # Errors
 /// The file cannot be written, or is a folder, a device or a FIFO. An existing file is then unchanged.
 pub fn write_whole(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
-    let about = metadata(path)?;
-    about.as_ref().map_or(Ok(()), |about| refuse(about, true))?;
-    let place = followed(path)?;
-    let mut temporary = temporary_in(folder_of(&place))?;
-    write(temporary.as_file_mut())?;
-    if let Some(about) = about {
-        // Not every file system supports permissions.
-        let file = temporary.as_file();
-        file.set_permissions(about.permissions()).ok();
+    metadata(path)?.map_or(Ok(()), |about| refuse(&about, true))?;
+    let (replacement, mut file) = Replacement::begin(path)?;
+    write(&mut file)?;
+    replacement.keep()
+}
+
+/// Writes a file atomically, as [`write_whole`] does; a device or a FIFO in place.
+///
+/// # Errors
+/// The file cannot be written, or is a folder. An existing file is then unchanged.
+pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let (replacement, mut file) = Replacement::begin(path)?;
+    file.write_all(bytes)?;
+    replacement.keep()
+}
+
+/// A file that is written under a temporary name, until it is kept. A device or a FIFO is written in place.
+pub struct Replacement {
+    path: PathBuf,
+    temporary: Option<(TempPath, Option<Permissions>)>,
+}
+
+impl Replacement {
+    /// Begins to replace a file, which may be missing. Returns the new one, to be written.
+    ///
+    /// # Errors
+    /// It cannot be written, or is a folder.
+    pub fn begin(path: &Path) -> io::Result<(Self, File)> {
+        let about = metadata(path)?;
+        about
+            .as_ref()
+            .map_or(Ok(()), |about| refuse(about, false))?;
+        if about.as_ref().is_some_and(|about| !about.is_file()) {
+            let replacement = Self {
+                path: path.to_owned(),
+                temporary: None,
+            };
+            return Ok((replacement, File::create(path)?));
+        }
+        let place = followed(path)?;
+        let suffix = place
+            .extension()
+            .map(|ending| format!(".{}", ending.display()));
+        let new = temporary_in(folder_of(&place), suffix.as_deref().unwrap_or_default())?;
+        let (file, temporary) = new.into_parts();
+        let replacement = Self {
+            path: place,
+            temporary: Some((temporary, about.map(|about| about.permissions()))),
+        };
+        Ok((replacement, file))
     }
-    temporary.persist(&place)?;
-    Ok(())
+
+    /// Where the file is written until then, for other programs.
+    pub fn written_at(&self) -> &Path {
+        self.temporary.as_ref().map_or(&self.path, |(at, _)| at)
+    }
+
+    /// Renames the file, which is complete.
+    ///
+    /// # Errors
+    /// The system refuses.
+    pub fn keep(self) -> io::Result<()> {
+        let Some((temporary, permissions)) = self.temporary else {
+            return Ok(());
+        };
+        if let Some(permissions) = permissions {
+            // Not every file system supports permissions.
+            fs::set_permissions(&temporary, permissions).ok();
+        }
+        Ok(temporary.persist(&self.path)?)
+    }
 }
 
 /// Checks that a file can be created in `folder`.
@@ -237,14 +301,16 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>)
 /// # Errors
 /// It cannot.
 pub fn try_folder(folder: &Path) -> io::Result<()> {
-    temporary_in(folder).map(|_| ())
+    temporary_in(folder, "").map(|_| ())
 }
 
-/// A temporary file with a unique name and the default permissions. Errors do not contain its name.
-fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+/// A temporary file with a unique name, which ends in `suffix`, and the default permissions. Errors do not contain its
+/// name.
+fn temporary_in(folder: &Path, suffix: &str) -> io::Result<NamedTempFile> {
     let mut new = File::options();
     let new = new.read(true).write(true).create_new(true);
-    tempfile::Builder::new().make_in(folder, |path| new.open(path))
+    let mut name = tempfile::Builder::new();
+    name.suffix(suffix).make_in(folder, |path| new.open(path))
 }
 
 /// Resolves symbolic links; the file at the end may be missing.

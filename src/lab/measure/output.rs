@@ -15,6 +15,7 @@ use crate::lab::error::LabError;
 use crate::output::plot::Print;
 use crate::output::table::{Cell, Table, csv_lines};
 use crate::runs::error::StoreError;
+use crate::runs::outputs::Replacement;
 use crate::runs::store::Store;
 use crate::scenario::trajectories::Tracks;
 
@@ -50,6 +51,8 @@ pub fn files() -> impl Iterator<Item = String> {
 pub struct Results {
     store: Store,
     agents: BufWriter<File>,
+    /// The file of people, under a temporary name until the end.
+    replacement: Replacement,
 }
 
 impl Results {
@@ -60,13 +63,15 @@ impl Results {
     pub fn create(folder: &Path) -> Result<Self, StoreError> {
         fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
         let path = folder.join(AGENTS);
-        let file = File::create(&path).map_err(|error| unwritten(&path, &error))?;
+        let begun = Replacement::begin(&path).map_err(|error| unwritten(&path, &error));
+        let (replacement, file) = begun?;
         let mut agents = BufWriter::new(file);
         let begun = writeln!(agents, "{AGENT_COLUMNS}");
         begun.map_err(|error| unwritten(&path, &error))?;
         Ok(Self {
             store: Store::at(folder),
             agents,
+            replacement,
         })
     }
 
@@ -107,7 +112,8 @@ impl Results {
     /// A file cannot be written.
     pub fn finish(mut self, measured: &Measured, tracks: &Tracks) -> Result<(), LabError> {
         let (store, flushed) = (self.store, self.agents.flush());
-        flushed.map_err(|error| unwritten(&store.path(AGENTS), &error))?;
+        let kept = flushed.and_then(|()| self.replacement.keep());
+        kept.map_err(|error| unwritten(&store.path(AGENTS), &error))?;
         let (diagrams, crossings) = (&measured.diagrams, &measured.crossings);
         store.write(FIELDS, &fields(measured)?)?;
         let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);

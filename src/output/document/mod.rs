@@ -8,6 +8,7 @@ use std::path::Path;
 
 use crate::output::plot::{PlotError, Print, Sheet};
 use crate::output::table::Table;
+use crate::runs::outputs::write_file;
 
 /// The width of figures and tables, millimeters.
 const WIDTH_MM: f64 = 170.0;
@@ -68,7 +69,7 @@ impl Document {
             Some("pdf") => self.pdf()?,
             _ => self.html()?.into_bytes(),
         };
-        std::fs::write(path, bytes).map_err(|reason| PlotError::Writing {
+        write_file(path, &bytes).map_err(|reason| PlotError::Writing {
             path: path.to_owned(),
             reason,
         })

@@ -13,6 +13,7 @@ use image::RgbImage;
 use super::Print;
 use super::output::{PlotError, resolution};
 use crate::output::colors::Rgb;
+use crate::runs::outputs::Replacement;
 
 /// The most colors in a frame of a GIF, without the transparent one.
 const COLORS: usize = 255;
@@ -25,6 +26,8 @@ const GRAYS: usize = 16;
 /// An animation while it is written.
 pub struct Animation {
     path: PathBuf,
+    /// Under a temporary name until the animation is finished.
+    file: Replacement,
     fps: f64,
     /// Frames so far.
     count: u64,
@@ -84,11 +87,12 @@ impl Animation {
         print: &Print,
     ) -> Result<Self, PlotError> {
         let size = [first.width(), first.height()];
+        let failed = |reason| PlotError::writing(path, reason);
+        let (replacement, file) = Replacement::begin(path).map_err(failed)?;
         let writer = if has_extension(path, &["mp4", "webm"]) {
-            Writer::Video(video(path, size, fps)?)
+            Writer::Video(video((path, replacement.written_at()), size, fps)?)
         } else {
-            let failed = |reason| PlotError::writing(path, reason);
-            let file = BufWriter::new(File::create(path).map_err(failed)?);
+            let file = BufWriter::new(file);
             match has_extension(path, &["gif"]) {
                 true => gif(file, size).map_err(std::io::Error::other),
                 false => apng(file, size, (count, fps), print).map_err(std::io::Error::other),
@@ -97,6 +101,7 @@ impl Animation {
         };
         Ok(Self {
             path: path.to_owned(),
+            file: replacement,
             fps,
             count: 0,
             writer,
@@ -150,7 +155,8 @@ impl Animation {
             Writer::Png(writer) => writer.finish().map_err(std::io::Error::other),
             Writer::Video(mut child) => ended(&mut child).map_or(Ok(()), Err),
         };
-        closed.map_err(|reason| PlotError::writing(&self.path, reason))
+        let kept = closed.and_then(|()| self.file.keep());
+        kept.map_err(|reason| PlotError::writing(&self.path, reason))
     }
 }
 
@@ -197,7 +203,12 @@ fn apng(
     Ok(Writer::Png(Box::new(encoder.write_header()?)))
 }
 
-fn video(path: &Path, [width, height]: [u32; 2], fps: f64) -> Result<Child, PlotError> {
+/// Starts ffmpeg, which writes the video `path` at another place for now.
+fn video(
+    (path, at): (&Path, &Path),
+    [width, height]: [u32; 2],
+    fps: f64,
+) -> Result<Child, PlotError> {
     let codec: &[&str] = match has_extension(path, &["webm"]) {
         true => &["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0"],
         false => &["-c:v", "libx264", "-crf", "18", "-movflags", "+faststart"],
@@ -210,7 +221,7 @@ fn video(path: &Path, [width, height]: [u32; 2], fps: f64) -> Result<Child, Plot
         .args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white"])
         .args(["-pix_fmt", "yuv420p"])
         .args(codec)
-        .arg(path)
+        .arg(at)
         .stdin(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()

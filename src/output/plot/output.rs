@@ -11,6 +11,7 @@ use super::layout::Layout;
 use super::pdf::Pdf;
 use super::pixels::Pixels;
 use super::{Print, Sheet, draw, font};
+use crate::runs::outputs::write_file;
 
 /// Units per point in an SVG.
 const SVG_SCALE: u32 = 4;
@@ -90,7 +91,7 @@ impl Sheet {
             Some("pdf") => self.pdf(print)?,
             _ => self.svg(print)?,
         };
-        std::fs::write(path, bytes).map_err(|reason| PlotError::writing(path, reason))
+        write_file(path, &bytes).map_err(|reason| PlotError::writing(path, reason))
     }
 
     /// The size of a panel's axes when the sheet is printed, points.
