@@ -117,6 +117,94 @@ fn text_from_a_study_is_shortened_and_escaped() {
     }
 }
 
+/// A room of which all names are hostile, but short.
+fn room() -> Value {
+    let name = |kind: &str| format!("{kind}\u{1b}[31m\u{7}\u{9b}2J\u{202e}");
+    json!({
+        "name": name("room"), "description": name("about"), "duration_secs": 20, "profile": "sph",
+        "stop": {"when_empty": true}, "walkable_area": [[[[0, 0], [8, 0], [8, 6], [0, 6]]]],
+        "exits": [{"name": name("east"), "line": [[8, 2], [8, 4]]}],
+        "queues": [{"name": name("desk"), "path": [[4, 3], [2, 3]], "service_secs": 1}],
+        "journeys": [{"name": name("out"), "stages": [name("desk"), name("east")]}],
+        "zones": [{"name": name("zone"), "area": [[5, 1], [6, 1], [6, 5], [5, 5]], "speed_factor": 0.5}],
+        "crowds": [{"name": name("crowd"), "area": [[1, 1], [3, 1], [3, 2], [1, 2]], "number": 3,
+                    "journey": name("out")}],
+        "measurements": [{"egress": {}}, {"line_flow": {"name": name("line"), "line": [[7.5, 2], [7.5, 4]]}}]
+    })
+}
+
+#[test]
+fn no_command_prints_control_characters_of_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("room.json"), room().to_string()).unwrap();
+    let label = "\u{1b}[31m";
+    let study = json!({"scenario": "room.json", "list": [{"description": label}, {"description": "b"}], "seeds": 2});
+    fs::write(folder.join("study.json"), study.to_string()).unwrap();
+    let suite = json!({
+        "scenario": "room.json", "grid": {"profile": ["sph"]}, "list": [{"label": label}],
+        "cases": [{"name": label, "about": label, "kind": "openings",
+                   "checks": [{"quantity": label, "run": label, "value": "arrived", "expected": {"exactly": 3}}]}]
+    });
+    fs::write(folder.join("suite.json"), suite.to_string()).unwrap();
+    for typed in [
+        "run room.json --verbose",
+        "run room.json --trajectory room.csv --save room.rrd --save room.html --checkpoint room.check",
+        "resume room.check",
+        "report room.json --out report.html",
+        "draw room.json --out room.svg",
+        "draw room.json --egress --out egress.svg",
+        "draw room.rrd --out recorded.svg",
+        "page room.rrd --out page.html",
+        "inspect room.json --all",
+        "measure room.csv --line 5,0,5,6",
+        "compare room.csv room.csv",
+        "sweep study.json --list",
+        "sweep study.json",
+        "sweep study.json --error time_secs=50%",
+        "estimate room.json --error time_secs=50%",
+        "verify suite.json --out verified",
+        "validate suite.json --out validated",
+    ] {
+        let output = run_in(folder, &typed.split(' ').collect::<Vec<_>>());
+        let said = [output.stdout.as_slice(), &output.stderr].concat();
+        let said = String::from_utf8_lossy(&said);
+        let is_obeyed = |c: char| c != '\n' && (c.is_control() || c == '\u{202e}');
+        assert!(!said.contains(is_obeyed), "{typed}: {said:?}");
+        assert!(!said.is_empty(), "{typed}");
+    }
+}
+
+#[test]
+fn letters_that_the_font_lacks_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut plan = room();
+    plan["exits"][0]["name"] = json!("东出口");
+    plan["journeys"][0]["stages"][1] = json!("东出口");
+    fs::write(folder.path().join("room.json"), plan.to_string()).unwrap();
+    for (typed, is_named) in [
+        ("draw room.json --out a.png", true),
+        ("draw room.json --out a.pdf", true),
+        ("draw room.json --out a.svg", false),
+        ("report room.json --out r.pdf", true),
+        ("report room.json --out r.html", false),
+        ("draw room.json --until 0.2 --fps 10 --out a.gif", true),
+    ] {
+        let output = run_in(folder.path(), &typed.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0));
+        let said = String::from_utf8_lossy(&output.stderr);
+        let note = "the font of PNG and PDF files lacks 东出口: boxes stand for these letters; SVG and HTML files";
+        let expected = if is_named { 1 } else { 0 };
+        assert_eq!(said.matches("lacks").count(), expected, "{typed}: {said}");
+        assert_eq!(said.matches(note).count(), expected, "{typed}: {said}");
+    }
+    let pages = crate::common::pdf::pages(&fs::read(folder.path().join("r.pdf")).unwrap());
+    let text: String = pages.iter().map(crate::common::pdf::Page::words).collect();
+    assert!(!text.contains('东') && text.contains('\u{fffd}'), "{text}");
+    let html = fs::read_to_string(folder.path().join("r.html")).unwrap();
+    assert!(html.contains("东出口"));
+}
+
 #[test]
 fn text_from_plans_and_trajectories_is_shortened_and_escaped() {
     let folder = tempfile::tempdir().unwrap();

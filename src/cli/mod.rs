@@ -56,7 +56,9 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+use crate::output::plot::take_lacked;
 use crate::runs::case::Source;
+use crate::scenario::quote::shown;
 use commands::{Arguments, Command};
 use terminal::talk;
 
@@ -86,6 +88,13 @@ pub fn main_of<A: Parser>(
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
+    let lacked = take_lacked();
+    if !lacked.is_empty() {
+        talk(&format!(
+            "note: the font of PNG and PDF files lacks {}: boxes stand for these letters; SVG and HTML files show them",
+            shown(&lacked)
+        ));
+    }
     // Where the program is not the main function of its process, nothing else does.
     std::io::stdout().flush().ok();
     failure.map_or(0, |failure| {

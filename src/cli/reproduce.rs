@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use super::arguments::ErrorOptions;
 use super::estimate::all_reached;
 use super::failure::Failure;
-use super::terminal::say;
+use super::terminal::say_text;
 use super::update::CaseOptions;
 use super::watch::Watch;
 use crate::lab::estimate::Questions;
@@ -73,7 +73,7 @@ pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
     let names: Vec<&str> = products.iter().map(|product| product.name).collect();
     let store = options.cases.store(&names)?;
     let texts = reproduce(&products, options.seeds, &store, &Watch::new())?;
-    let said = texts.iter().try_for_each(say);
+    let said = texts.iter().try_for_each(|text| say_text(text));
     options.cases.document.put(names.into_iter().zip(&texts))?;
     said
 }
@@ -98,7 +98,7 @@ fn estimate(options: &ReproduceOptions) -> Result<(), Failure> {
         &format!("{TABLE}.md"),
         format!("{text}\n{costs}").as_bytes(),
     )?;
-    let said = say(format!("{text}\n{costs}"));
+    let said = say_text(&format!("{text}\n{costs}"));
     options.cases.document.put([(TABLE, &text)])?;
     said?;
     all_reached(&answers)

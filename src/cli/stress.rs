@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::failure::Failure;
-use super::terminal::say;
+use super::terminal::say_text;
 use super::update::CaseOptions;
 use super::watch::Watch;
 use crate::lab::stress::{Detail, PARTS, stress};
@@ -22,7 +22,9 @@ pub fn run(options: &StressOptions) -> Result<(), Failure> {
     let detail = Detail::read(options.quick)?;
     let report = stress(&detail, &store, &Watch::new())?;
     let parts = report.parts();
-    let said = parts.iter().try_for_each(|text| say(format!("{text}\n")));
+    let said = parts
+        .iter()
+        .try_for_each(|text| say_text(&format!("{text}\n")));
     options.cases.document.put(PARTS.into_iter().zip(parts))?;
     said?;
     match report.failures() {

@@ -20,7 +20,12 @@ pub fn say(text: impl AsRef<[u8]>) -> Result<(), Failure> {
     }
 }
 
-/// Writes results to stdout, as JSON or as text.
+/// Writes a text to stdout, with control characters escaped: it may quote names from files.
+pub fn say_text(text: &str) -> Result<(), Failure> {
+    say(printable(text))
+}
+
+/// Writes results to stdout, as JSON or as text with control characters escaped.
 pub fn tell(
     as_json: bool,
     json: impl FnOnce() -> Value,
@@ -28,7 +33,7 @@ pub fn tell(
 ) -> Result<(), Failure> {
     match as_json {
         true => say(format!("{}\n", json())),
-        false => say(text()),
+        false => say_text(&text()),
     }
 }
 

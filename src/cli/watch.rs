@@ -11,6 +11,7 @@ use super::terminal::talk;
 use crate::engine::simulation::Simulation;
 use crate::runs::drive::{End, Observer, Run};
 use crate::runs::job::Listener;
+use crate::scenario::quote::printable;
 
 /// A progress bar on stderr, shown only if stderr is a terminal, until it is dropped.
 pub fn bar(length: u64, template: &str) -> ProgressBar {
@@ -88,7 +89,7 @@ impl Listener for Watch {
             let percent = 100 * done / all.max(1);
             talk(&format!("{percent:>3} %, {left} s left; {text}"));
         } else {
-            self.bar.set_message(text);
+            self.bar.set_message(printable(&text));
         }
     }
 

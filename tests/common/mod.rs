@@ -13,6 +13,10 @@ pub mod legs;
 pub mod outputs;
 #[cfg(feature = "program")]
 pub mod page;
+#[cfg(feature = "program")]
+pub mod pdf;
+#[cfg(feature = "program")]
+pub mod pictures;
 pub mod plan_reading;
 pub mod plans;
 #[cfg(feature = "program")]
@@ -31,6 +35,8 @@ pub mod recording;
 #[cfg(feature = "program")]
 pub mod reports;
 pub mod ring;
+#[cfg(feature = "program")]
+pub mod room;
 pub mod simulated;
 pub mod social;
 #[cfg(feature = "program")]

@@ -121,7 +121,8 @@ fn bytes(html: &str, class: &str) -> Vec<Vec<u8>> {
         .collect()
 }
 
-fn from_base64(text: &str) -> Vec<u8> {
+/// Decodes base64.
+pub fn from_base64(text: &str) -> Vec<u8> {
     let digit = |c: u8| match c {
         b'A'..=b'Z' => c - b'A',
         b'a'..=b'z' => c - b'a' + 26,

@@ -1,6 +1,7 @@
 //! The font of all pictures: widths of texts, lines, and the starting points of texts.
 
-use std::sync::LazyLock;
+use std::collections::BTreeSet;
+use std::sync::{LazyLock, Mutex, PoisonError};
 
 use ab_glyph::{Font, FontRef, GlyphId};
 use plotters::style::text_anchor::{HPos, VPos};
@@ -9,6 +10,8 @@ use plotters_backend::{BackendCoord, BackendTextStyle};
 
 /// plotters' sizes of texts are this many times the size of the em square.
 pub const SIZE_PER_EM: f64 = 1.24;
+/// The box that stands for a letter that the font lacks.
+pub const LACKING: GlyphId = GlyphId(0);
 /// The height of a line, in sizes of its text.
 pub const LINE: f64 = 1.2;
 
@@ -25,6 +28,28 @@ pub fn face() -> Option<&'static FontRef<'static>> {
 pub fn register() {
     let _ =
         plotters::style::register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular());
+}
+
+/// The letters that were drawn although the font lacks them.
+static LACKED: Mutex<BTreeSet<char>> = Mutex::new(BTreeSet::new());
+
+/// The glyph of a letter that is drawn; the box that stands for all others is remembered for [`take_lacked`].
+pub fn drawn(face: &FontRef, letter: char) -> GlyphId {
+    let glyph = face.glyph_id(letter);
+    if glyph == LACKING && !letter.is_control() {
+        let lacked = LACKED.lock();
+        lacked
+            .unwrap_or_else(PoisonError::into_inner)
+            .insert(letter);
+    }
+    glyph
+}
+
+/// The letters that the font of PNG and PDF files lacks, of all texts drawn since the last call, each once.
+pub fn take_lacked() -> String {
+    let lacked = LACKED.lock();
+    let letters = std::mem::take(&mut *lacked.unwrap_or_else(PoisonError::into_inner));
+    letters.into_iter().collect()
 }
 
 /// The glyphs of a text, each with the place where it begins, in ems; and the width of the text.

@@ -22,7 +22,7 @@ mod print;
 pub use animation::Animation;
 pub use axis::Axis;
 pub use draw::{label_lines, label_width};
-pub use font::{LINE, lines as text_lines, width_of as text_width};
+pub use font::{LINE, lines as text_lines, take_lacked, width_of as text_width};
 pub use output::PlotError;
 pub use pages::Pages;
 pub use print::{PAPER_DPI, Print};

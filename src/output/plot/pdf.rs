@@ -193,6 +193,11 @@ impl Pdf {
     /// The number of a glyph in the file.
     fn glyph(&mut self, glyph: GlyphId, letter: char) -> u16 {
         let number = self.remapper.remap(glyph.0);
+        // One box stands for all letters that the font lacks.
+        let letter = match glyph {
+            font::LACKING => char::REPLACEMENT_CHARACTER,
+            _ => letter,
+        };
         if let Some(face) = font::face() {
             let em = face.units_per_em().unwrap_or(2048.0);
             let width = 1000.0 * face.h_advance_unscaled(glyph) / em;
@@ -326,7 +331,9 @@ impl DrawingBackend for Backend<'_> {
             return Ok(());
         };
         let ([x, y], em) = font::baseline(text, style, at);
-        let glyphs = text.chars().map(|letter| (face.glyph_id(letter), letter));
+        let glyphs = text
+            .chars()
+            .map(|letter| (font::drawn(face, letter), letter));
         let numbers = glyphs.flat_map(|(glyph, letter)| self.0.glyph(glyph, letter).to_be_bytes());
         let numbers: Vec<u8> = numbers.collect();
         let transform = style.transform();

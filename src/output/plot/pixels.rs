@@ -68,6 +68,9 @@ impl<'a> DrawingBackend for Pixels<'a> {
         let scale = PxScale::from(em as f32 * units);
         let color = style.color();
         let mut pixels = Vec::new();
+        text.chars().for_each(|letter| {
+            font::drawn(face, letter);
+        });
         for (glyph, begins) in font::glyphs(face, text).0 {
             let place = point((begins * em) as f32, 0.0);
             let Some(outline) = face.outline_glyph(glyph.with_scale_and_position(scale, place))
