@@ -5,8 +5,10 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use crate::common::program;
+use crate::common::recording::Recording;
 use crate::common::tracks::file;
+use crate::common::{pictures, program};
+use sandbox::output::recording::Recorded;
 use serde_json::Value;
 
 fn measure(arguments: &[&str]) -> Output {
@@ -129,13 +131,29 @@ fn a_corridor_is_measured_into_a_folder() {
     assert_eq!(pairs, known + by_speed.iter().sum::<f64>() + by_voronoi);
     let regions = columns(&folder.join("regions.csv"));
     assert_eq!(regions["walkable_m2"].len(), 4);
-    for name in [
-        "fields.svg",
-        "fundamental_diagram.png",
-        "flow.svg",
-        "regions.png",
+    for (name, texts) in [
+        (
+            "fields",
+            &[
+                "mean density",
+                "density [P/m²]",
+                "region 1",
+                "line 1",
+                "x [m]",
+            ][..],
+        ),
+        (
+            "fundamental_diagram",
+            &["speed [m/s]", "SPH at people", "Voronoi"],
+        ),
+        ("flow", &["t [s]", "crossings so far", "line 1 forward"]),
+        (
+            "regions",
+            &["region 1: density", "region 1: speed", "classic"],
+        ),
+        ("safety", &["above 4 P/m²", "crowd pressure"]),
     ] {
-        assert!(folder.join(name).metadata().unwrap().len() > 1000);
+        pictures::assert_has(&folder.join(name), texts);
     }
 
     // Existing files are replaced only with `--force`.
@@ -267,4 +285,50 @@ fn lines_off_the_floor_are_refused_unless_someone_crosses_them() {
         "{}",
         program::stderr(&output)
     );
+}
+
+#[test]
+fn recordings_far_from_the_origin_are_as_fine_as_the_file_and_say_their_own_origin() {
+    // As a survey has them: 0.35 m between two people, where single precision has steps of 0.5 m.
+    let place = |id: i32, frame: i32| {
+        let across = f64::from(id) * 0.35;
+        [395_131.0 + 0.05 * f64::from(frame), 5_268_347.2 + across]
+    };
+    let rows = (0..20).flat_map(|frame| (1..=2).map(move |id| (id, frame)));
+    let rows = rows.map(|(id, frame)| {
+        let [x, y] = place(id, frame);
+        format!("{id} {frame} {x:.2} {y:.2}\n")
+    });
+    let text = "# framerate: 25\n# id frame x/m y/m\n".to_owned() + &rows.collect::<String>();
+    let (folder, path) = file("utm.txt", &text);
+    let plan = folder.path().join("plan.wkt");
+    let corners = "395120 5268340, 395140 5268340, 395140 5268350, 395120 5268350, 395120 5268340";
+    fs::write(&plan, format!("POLYGON (({corners}))")).unwrap();
+    let [path, plan] = [&path, &plan].map(|path| path.to_str().unwrap());
+    let out = folder.path().join("m");
+    let line = ["--line", "395131.5,5268346,395131.5,5268349"];
+    let region = ["--region", "395131,5268347,395132,5268348"];
+    let places = [path, "--geometry", plan, "--out", out.to_str().unwrap()];
+    let output = measure(&[&places[..], &line, &region].concat());
+    let said = program::stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let note = "in the recording places are those of the file less (395100, 5268300) m";
+    assert!(said.contains(note), "{said}");
+    let recording = Recording::read(&out.join("measured.rrd"));
+    let crowd = recording.pairs("world/agents", "Points2D:positions");
+    assert_eq!(crowd.len(), 20);
+    for (frame, people) in crowd {
+        for (k, [x, y]) in people.into_iter().enumerate() {
+            let there = place(k as i32 + 1, frame as i32);
+            let off = (x + 395_100.0 - there[0]).hypot(y + 5_268_300.0 - there[1]);
+            assert!(off < 0.001, "{frame}: {x} {y} {there:?}");
+        }
+    }
+    let recorded = Recorded::read(&out.join("measured.rrd")).unwrap();
+    let walls = recorded.walls().concat();
+    let corner = |x: f64, y: f64| walls.iter().any(|p| (p.x - x).hypot(p.y - y) < 0.001);
+    assert!(corner(20.0, 40.0) && corner(40.0, 50.0), "{walls:?}");
+    let document: rerun::components::Text =
+        recording.of_static("info/scenario", "TextDocument:text");
+    assert!(document.contains("(395100, 5268300) m"), "{document:?}");
 }

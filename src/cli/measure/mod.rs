@@ -50,6 +50,13 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     if !recording.has_own_ids {
         talk("note: in the recording ids are replaced by numbers in their order, from 0");
     }
+    let [x, y] = recording.origin.into();
+    if [x, y] != [0.0; 2] {
+        talk(&format!(
+            "note: in the recording places are those of the file less ({x}, {y}) m: so far from the origin its single \
+             precision is too coarse"
+        ));
+    }
     let template = "{bar:30} {pos} of {len} rows, {eta} left";
     let progress = bar(tracks.len() as u64, template);
     let measured = measure(&tracks, &site, &what, |moments| {

@@ -96,6 +96,17 @@ pub fn recordings(
     let debug = debug_agents(record, &run.scenario)?;
     let mut all: Vec<Box<dyn Observer<Failure> + Send>> = Vec::new();
     if let Some(to) = destination(record, interrupt)? {
+        let view = run.scenario.view.region;
+        let farthest = view.min.amax().max(view.max.amax());
+        // Half the distance between two numbers of single precision.
+        let off = 0.5 * f64::from(f32::EPSILON) * farthest;
+        if off > COARSE {
+            talk(&format!(
+                "note: the plan lies up to {farthest:.0} m from the origin: places in the recording have single \
+                 precision and are off by up to {:.0} mm; move the plan to the origin",
+                1000.0 * off
+            ));
+        }
         all.push(Box::new(Recording::create(
             to,
             (record, debug.clone()),
@@ -107,6 +118,9 @@ pub fn recordings(
     }
     Ok(all)
 }
+
+/// Places in recordings that are off by more than this, meters, are worth a note.
+const COARSE: f64 = 0.001;
 
 /// Which frames are recorded.
 struct Due {

@@ -141,6 +141,13 @@ impl Polygon {
         }
     }
 
+    /// The same body at another place, meters away.
+    #[must_use]
+    pub fn moved(mut self, by: Vector) -> Self {
+        self.points.iter_mut().for_each(|point| *point += by);
+        self
+    }
+
     /// All corners, ring by ring.
     pub fn points(&self) -> &[Vector] {
         &self.points

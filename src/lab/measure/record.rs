@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use super::{Behind, Moment, Options, Site};
+use crate::analysis::crossing::Line;
 use crate::engine::agents::REFERENCE_RADIUS;
+use crate::engine::geometry::Walls;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::Region;
 use crate::output::recording::{
@@ -14,6 +16,10 @@ use crate::scenario::trajectories::Tracks;
 
 /// With ids larger than this, the recording uses the people's numbers instead.
 const LARGEST_ID: i64 = 1 << 22;
+
+/// Farther from the origin than this, meters, the single precision of recordings is coarser than 1 mm: places are then
+/// recorded from an origin of their own.
+const FAR: f64 = 10_000.0;
 
 /// The densities with the first and the last color, P/m².
 const DENSITIES: [f64; 2] = [0.0, 8.0];
@@ -29,6 +35,8 @@ pub struct MomentRecorder<'a> {
     recorder: MeasuredRecorder,
     /// Whether the recording has the ids of the file. Otherwise it numbers people from 0 in the order of their ids.
     pub has_own_ids: bool,
+    /// The origin of the recording, meters: places in it are those of the file less this.
+    pub origin: Vector,
     /// Number of the next frame.
     next: Option<i64>,
 }
@@ -47,8 +55,9 @@ impl<'a> MomentRecorder<'a> {
         let margin = Vector::repeat(1.0);
         let ends = [tracks.frames.first(), tracks.frames.last()];
         let ends = ends.map(|frame| frame.map_or(0.0, |&frame| tracks.time(frame)));
+        let origin = origin([low, high]);
         let title = folder.file_name().unwrap_or_default().to_string_lossy();
-        let document = document(tracks, measured);
+        let document = document(tracks, measured) + &on_origin(origin);
         let options = RecordingOptions {
             id: Identity::of("measurement", format!("{title} {document}")).to_string(),
             application: format!("sandbox measure {title}"),
@@ -56,8 +65,8 @@ impl<'a> MomentRecorder<'a> {
             description: "A crowd that was measured, by its SPH density (§8).".to_owned(),
             document,
             view: Region {
-                min: low - margin,
-                max: high + margin,
+                min: low - margin - origin,
+                max: high + margin - origin,
             },
             density_range: DENSITIES,
             speed_range: SPEEDS,
@@ -71,14 +80,25 @@ impl<'a> MomentRecorder<'a> {
             entering: 0,
         };
         let path = folder.join(RECORDING);
+        let regions = measured.regions.iter().map(|&Region { min, max }| Region {
+            min: min - origin,
+            max: max - origin,
+        });
+        let lines = measured.lines.iter().map(|&Line { start, end }| Line {
+            start: start - origin,
+            end: end - origin,
+        });
         let marked = Marked {
-            regions: &measured.regions,
-            lines: &measured.lines,
+            regions: &regions.collect::<Vec<_>>(),
+            lines: &lines.collect::<Vec<_>>(),
         };
-        let drawn = (&site.walls, marked);
+        let obstacles = site.walls.obstacles().iter().cloned();
+        let walls = Walls::new(obstacles.map(|one| one.moved(-origin)).collect());
+        let drawn = (&walls, marked);
         Ok(Self {
             tracks,
             recorder: MeasuredRecorder::create(path.as_path(), drawn, REFERENCE_RADIUS, &options)?,
+            origin,
             has_own_ids: tracks.ids.iter().all(|id| (0..=LARGEST_ID).contains(id)),
             next: None,
         })
@@ -99,7 +119,7 @@ impl<'a> MomentRecorder<'a> {
                     true => person.id as u32,
                     false => person.number,
                 },
-                position: person.position,
+                position: person.position - self.origin,
                 velocity: person.velocity,
                 density: person.density,
             });
@@ -115,6 +135,25 @@ impl<'a> MomentRecorder<'a> {
     /// The file cannot be written.
     pub fn finish(self) -> Result<(), RecordingError> {
         self.recorder.finish()
+    }
+}
+
+/// The origin of a recording of places between these corners: their own if they are far away, to whole 100 m.
+fn origin([low, high]: [Vector; 2]) -> Vector {
+    match low.amax().max(high.amax()) > FAR {
+        true => (low / 100.0).map(f64::floor) * 100.0,
+        false => Vector::zeros(),
+    }
+}
+
+/// What the recording's text says of its origin; nothing without one of its own.
+fn on_origin(origin: Vector) -> String {
+    match origin == Vector::zeros() {
+        true => String::new(),
+        false => format!(
+            "* Places are those of the file less ({}, {}) m: so far from the origin single precision is too coarse\n",
+            origin.x, origin.y
+        ),
     }
 }
 
