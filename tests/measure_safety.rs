@@ -1,7 +1,7 @@
 //! Exposure, alarms, level of service, crowd pressure and departures in trajectories.
 
 use crate::common::tracks::{self, tracks};
-use sandbox::lab::measure::{MeasureError, Measured, Options, Report, Site, measure};
+use sandbox::lab::measure::{MeasureError, Measured, Options, Report, Site, measure, pictures};
 use sandbox::scenario::trajectories::Tracks;
 
 fn options(sample_every: f64) -> Options {
@@ -75,6 +75,32 @@ fn the_report_names_the_thresholds_as_what_they_are() {
     assert_eq!(json["safety"]["dense"][0]["exposed"]["longest_secs"], 2.0);
     assert_eq!(json["safety"]["dense"].as_array().unwrap().len(), 3);
     assert_eq!(json["safety"]["departures"]["left"], 0);
+}
+
+#[test]
+fn the_threshold_of_mina_is_named_in_packed_crowds_only() {
+    for (spacing, is_packed) in [(0.3, true), (0.6, false)] {
+        let rows = (0..144).flat_map(|k| (0..=20).map(move |frame| (k, frame)));
+        let place = |k: i64| f64::from(k as i32) * spacing;
+        let rows = rows.map(|(k, frame)| (k, frame, place(k % 12), place(k / 12)));
+        let tracks = tracks(10.0, &rows.collect::<Vec<_>>());
+        let (options, measured) = (options(1.0), measured(&tracks, 1.0));
+        let report = Report {
+            tracks: &tracks,
+            options: &options,
+            measured: &measured,
+        };
+        let text = report.text();
+        assert_eq!(text.contains("Mina"), is_packed, "{text}");
+        let says = "nobody was above 6 P/m²: thresholds of the literature are for packed crowds";
+        assert_eq!(text.contains(says), !is_packed, "{text}");
+        let site = Site::new(Vec::new());
+        let sheets: Vec<_> = pictures::sheets(&measured, &site).collect();
+        let labels = sheets.iter().flat_map(|(_, sheet)| &sheet.panels);
+        let labels = labels.flat_map(|panel| format!("{:?}", panel.marks).into_bytes());
+        let labels = String::from_utf8(labels.collect()).unwrap();
+        assert_eq!(labels.contains("Mina"), is_packed);
+    }
 }
 
 #[test]

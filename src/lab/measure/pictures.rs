@@ -1,5 +1,6 @@
 //! Pictures of mean fields, fundamental diagrams, N(t), regions and alarms.
 
+use super::safety_report::is_packed;
 use super::{Class, Crossings, Density, Diagram, FrameMean, Mean, Measured, Safety, Sample, Site};
 use crate::analysis::crowd_pressure::BEFORE_ACCIDENT;
 use crate::analysis::exposure::DENSITIES;
@@ -301,10 +302,10 @@ fn safety(safety: &Safety) -> Sheet {
     let label = format!("{BEFORE_ACCIDENT}: before the accident at Mina, 2006");
     let mark = ends.map(|time| [time, BEFORE_ACCIDENT]).to_vec();
     let highest = series(|sample| sample.pressure);
-    let pressures = vec![
-        (mark, Style::broken(LINES[1], 1.2, &label)),
-        (highest, Style::full(LINES[0], 1.2, "highest")),
-    ];
+    let mut pressures = vec![(highest, Style::full(LINES[0], 1.2, "highest"))];
+    if is_packed(safety) {
+        pressures.insert(0, (mark, Style::broken(LINES[1], 1.2, &label)));
+    }
     let pressure = ["crowd pressure", "ρ Var(v) [1/s²]"];
     let panels = vec![
         over_time(["alarms", "area [m²]"], ends, 1.0, areas),

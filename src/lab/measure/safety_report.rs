@@ -25,26 +25,38 @@ pub fn text(measured: &Measured) -> String {
         let place = person.position;
         text += &format!(
             "\ncrowd pressure  at most {:.4} 1/s² at ({:.2}, {:.2}) m, {time:.2} s, {:.2} P/m²; mean {:.4} 1/s²\n\
-             \u{20}               above {BEFORE_ACCIDENT} 1/s²{}: {} people at once, {:.2} s at a stretch\n",
+             \u{20}               {}\n",
             person.pressure.unwrap_or_default(),
             place.x,
             place.y,
             person.density,
             safety.pressures.mean().unwrap_or_default(),
-            meaning(safety),
-            safety.pressures.people,
-            safety.pressures.spell.longest() * safety.secs,
+            threshold(safety),
         );
     }
     text + &left(departures)
 }
 
-/// A note on the pressure above which people are counted: it is known only for packed crowds.
-fn meaning(safety: &Safety) -> String {
-    match safety.exposure.exposed(safety.secs)[0].people > 0 {
-        true => " (measured before the accident at Mina in 2006, not a safety limit)".to_owned(),
-        false => format!(" (no alarm: no one was above {} P/m²)", DENSITIES[0]),
+/// Who was above the pressure at which crowd turbulence began once: it is known only for packed crowds.
+fn threshold(safety: &Safety) -> String {
+    if !is_packed(safety) {
+        let packed = DENSITIES[DENSITIES.len() - 1];
+        return format!(
+            "nobody was above {packed} P/m²: thresholds of the literature are for packed crowds, and say nothing here"
+        );
     }
+    format!(
+        "above {BEFORE_ACCIDENT} 1/s² (measured before the accident at Mina in 2006, not a safety limit): {} people at \
+         once, {:.2} s at a stretch",
+        safety.pressures.people,
+        safety.pressures.spell.longest() * safety.secs,
+    )
+}
+
+/// Whether somebody was above the highest of [`DENSITIES`].
+pub fn is_packed(safety: &Safety) -> bool {
+    let exposed = safety.exposure.exposed(safety.secs);
+    exposed[DENSITIES.len() - 1].people > 0
 }
 
 /// The times at which people had left, in one line.
