@@ -144,7 +144,20 @@ fn the_suite_of_the_documentation_passes() {
         let csv = fs::read_to_string(out.join("my_suite.csv")).unwrap();
         let row = format!("room,sf->sph,{seeds},people out,12,12,12,true");
         assert!(csv.lines().any(|line| line == row), "{csv}");
-        assert!(out.join("room.png").exists() && out.join("my_suite.json").exists());
+        let findings = fs::read_to_string(out.join("my_suite.json")).unwrap();
+        let findings: Value = serde_json::from_str(&findings).unwrap();
+        for finding in findings.as_array().unwrap() {
+            assert_eq!(
+                (&finding["case"], &finding["passed"]),
+                (&"room".into(), &true.into())
+            );
+            assert_eq!(finding["checks"][0]["value"], 12.0);
+        }
+        // The room with its people, who have colors.
+        let picture = image::open(out.join("room.png")).unwrap().to_rgb8();
+        let is_colored = |pixel: &&image::Rgb<u8>| pixel.0.iter().max() > pixel.0.iter().min();
+        let colored = picture.pixels().filter(is_colored).count();
+        assert!(colored > 500, "{colored} pixels");
     }
 }
 
@@ -253,4 +266,38 @@ fn a_suite_with_changed_values_is_planned_or_refused() {
         }
         1 << 24
     });
+}
+
+#[test]
+fn update_also_writes_the_status_beside_the_document() {
+    let folder = example();
+    let path = |name: &str| folder.path().join(name);
+    let document = "<!-- my_suite -->\n<!-- /my_suite -->\n";
+    let other = r#"{"cases": 1, "passed": 0, "missed": ["room"], "values": [0, 1]}"#;
+    let status =
+        format!(r#"{{"suite": "my_suite", "profiles": {{"rvo": {other}, "sph": {other}}}}}"#);
+    fs::write(path("doc.md"), document).unwrap();
+    fs::write(path("doc.json"), status).unwrap();
+    let verify = |more: &str| {
+        let typed = format!("verify my_suite.json --out verified --update doc.md{more}");
+        let output = run_in(folder.path(), &typed.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let status: Value =
+            serde_json::from_str(&fs::read_to_string(path("doc.json")).unwrap()).unwrap();
+        status["profiles"].clone()
+    };
+    // Of one profile: the document stays.
+    let profiles = verify(" --profile sph");
+    let passed = serde_json::json!({"cases": 1, "passed": 1, "missed": [], "values": [0, 0]});
+    assert_eq!(profiles["sph"], passed);
+    assert_eq!(profiles["rvo"]["missed"][0], "room");
+    assert!(profiles.get("sf->sph").is_none());
+    assert_eq!(fs::read_to_string(path("doc.md")).unwrap(), document);
+    let profiles = verify("");
+    assert_eq!(profiles["sf->sph"], passed);
+    assert!(
+        fs::read_to_string(path("doc.md"))
+            .unwrap()
+            .contains("Passed by sph: 1 of 1 cases")
+    );
 }

@@ -1,16 +1,18 @@
 //! `sandbox verify` and `sandbox validate`: suites of cases with expected results.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use super::failure::Failure;
-use super::terminal::{say, talk};
+use super::terminal::{say_text, talk};
 use super::update::CaseOptions;
 use super::watch::Watch;
-use crate::lab::suite::{Chosen, Judged, Suite};
+use crate::lab::suite::{Chosen, Judged, Status, Suite};
+use crate::runs::outputs::write_whole;
 use crate::runs::store::Store;
 use crate::scenario::catalog;
 use crate::scenario::quote::shown;
@@ -99,8 +101,10 @@ fn judge(
         let (name, known) = (shown(&name), known.collect::<Vec<_>>().join(", "));
         Failure::Input(format!("{option}{name}: no such case; there are {known}"))
     })?;
-    if options.cases.document.update.is_some() && !(names.is_empty() && options.profile.is_empty())
-    {
+    let update = options.cases.document.update.as_deref();
+    let status = update.and_then(Status::beside);
+    let is_whole = options.profile.is_empty();
+    if update.is_some() && !(names.is_empty() && (is_whole || status.is_some())) {
         let reason = "--update needs all cases and profiles; name none";
         return Err(Failure::Input(reason.to_owned()));
     }
@@ -127,8 +131,18 @@ fn judge(
     let store = Store::open(&options.cases.out)?;
     let report = planned.run(judged, &store, &Watch::new())?;
     let text = report.markdown();
-    let said = say(format!("{text}\n"));
-    options.cases.document.put([(&suite.name, &text)])?;
+    let said = say_text(&format!("{text}\n"));
+    if is_whole {
+        options.cases.document.put([(&suite.name, &text)])?;
+    }
+    if let Some(file) = status
+        && let Some(status) = Status::updated(&file, &report)
+    {
+        let written = write_whole(&file, |whole| whole.write_all(status.as_bytes()));
+        written.map_err(|error| {
+            Failure::Output(format!("cannot write {}: {error}", file.display()))
+        })?;
+    }
     for line in report.no_longer_missed() {
         talk(&format!("note: {line}"));
     }

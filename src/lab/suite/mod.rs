@@ -16,9 +16,11 @@ mod pictures;
 mod quantity;
 mod report;
 mod run;
+mod status;
 
 pub use check::{Judgment, Runs, in_tolerances};
 pub use file::Suite;
 pub use keys::{Case, Check, Expected};
 pub use report::{Finding, Report, Skipped};
 pub use run::{Chosen, Judged, Planned};
+pub use status::{Passed, Status};

@@ -5,6 +5,7 @@ use serde_json::json;
 use super::check::Judgment;
 use super::file::Suite;
 use super::keys::Case;
+use super::status::Passed;
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
 use crate::output::table::Table;
@@ -197,7 +198,7 @@ impl<'a> Report<'a> {
         let counts: Vec<String> = self
             .profiles
             .iter()
-            .map(|profile| self.passed(profile))
+            .map(|profile| self.counted(profile))
             .collect();
         let counts = counts.join(", by ");
         let table = self.table(&rows);
@@ -209,27 +210,44 @@ impl<'a> Report<'a> {
         format!("Passed by {counts}. Bold: not as expected.{walls}\n\n{by_kind}{table}{parts}")
     }
 
-    /// How many cases and compared values of a profile are as expected.
-    fn passed(&self, profile: &str) -> String {
+    /// What a profile passes.
+    pub fn passed(&self, profile: &str) -> Passed {
         let cases = self.cases();
-        let passed = cases
+        let is_missed = |case: &&&Case| self.is_passed(case, profile) != Some(true);
+        let missed: Vec<String> = cases
             .iter()
-            .filter(|case| self.is_passed(case, profile) == Some(true));
+            .filter(is_missed)
+            .map(|case| case.name.clone())
+            .collect();
         let own = self.findings.iter().filter(|one| one.profile == profile);
         let compared = own
             .flat_map(|one| &one.checks)
             .filter(|check| check.expected.is_measured());
         let compared: Vec<bool> = compared.map(Judgment::is_passed).collect();
-        let inside = compared.iter().filter(|&&inside| inside).count();
-        let values = match compared.len() {
-            0 => String::new(),
-            count => format!(" ({inside} of {count} values)"),
+        Passed {
+            cases: cases.len(),
+            passed: cases.len() - missed.len(),
+            missed,
+            values: [
+                compared.iter().filter(|&&inside| inside).count(),
+                compared.len(),
+            ],
+        }
+    }
+
+    /// The same in words.
+    fn counted(&self, profile: &str) -> String {
+        let Passed {
+            cases,
+            passed,
+            values,
+            ..
+        } = self.passed(profile);
+        let values = match values {
+            [_, 0] => String::new(),
+            [inside, count] => format!(" ({inside} of {count} values)"),
         };
-        format!(
-            "{profile}: {} of {} cases{values}",
-            passed.count(),
-            cases.len()
-        )
+        format!("{profile}: {passed} of {cases} cases{values}")
     }
 
     /// The reasons of known misses. Consecutive cases that the same profiles miss for the same reason share a line.

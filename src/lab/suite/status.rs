@@ -1,0 +1,54 @@
+//! How many cases of a suite each profile passes, as data that reports read.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::report::Report;
+use crate::scenario::input;
+
+/// The results of a suite by profile.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Status {
+    /// The name of the suite.
+    pub suite: String,
+    /// The results of each profile.
+    pub profiles: BTreeMap<String, Passed>,
+}
+
+/// What a profile passes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Passed {
+    /// The number of cases.
+    pub cases: usize,
+    /// The number of cases that it passes.
+    pub passed: usize,
+    /// The cases that it misses.
+    pub missed: Vec<String>,
+    /// The number of values that are compared with measured ones, those within the tolerance first.
+    pub values: [usize; 2],
+}
+
+impl Status {
+    /// The file that has the status beside a document, if there is one.
+    pub fn beside(document: &Path) -> Option<PathBuf> {
+        let file = document.with_extension("json");
+        Self::read(&file).is_some().then_some(file)
+    }
+
+    fn read(file: &Path) -> Option<Self> {
+        serde_json::from_str(&input::text(file).ok()?).ok()
+    }
+
+    /// The text of this status file with the results of a report in place of its own; `None` if it is of another suite.
+    pub fn updated(file: &Path, report: &Report) -> Option<String> {
+        let mut status = Self::read(file).filter(|status| status.suite == report.suite.name)?;
+        let profiles = report.profiles.iter();
+        let new = profiles.map(|profile| (profile.clone(), report.passed(profile)));
+        status.profiles.extend(new);
+        Some(serde_json::to_string_pretty(&status).ok()? + "\n")
+    }
+}
