@@ -70,6 +70,94 @@ fn sigterm_ends_a_run_with_its_summary() {
     assert!(!folder.path().join("long.sqlite-journal").exists());
 }
 
+/// Trajectories of 40 people in 20,000 frames.
+fn tracks() -> String {
+    let frames = 0..20_000;
+    let row = |frame: i32, id: i32| {
+        let x = f64::from(frame % 500) * 0.02;
+        format!("{id} {frame} {x} {}\n", f64::from(id) * 0.5)
+    };
+    let rows = frames.flat_map(|frame| (1..=40).map(move |id| row(frame, id)));
+    format!(
+        "# framerate: 25\n# id frame x/m y/m\n{}",
+        rows.collect::<String>()
+    )
+}
+
+#[test]
+fn every_long_command_ends_by_sigterm() {
+    use std::os::unix::process::ExitStatusExt;
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("long.json", LONG);
+    write("tracks.txt", &tracks());
+    write("study.json", r#"{"scenario": "long.json", "seeds": 3}"#);
+    for typed in [
+        "run long.json",
+        "report long.json --out r.pdf",
+        "report long.json --at 1000 --at 900000 --out r.html",
+        "draw long.json --at 900000 --out d.svg",
+        "draw long.json --from 10 --until 900000 --fps 20 --out d.gif",
+        "draw long.json --egress --out e.svg",
+        "draw tracks.txt --unit m --until 790 --fps 25 --out t.gif",
+        "inspect long.json --agent 0 --at 900000",
+        "measure tracks.txt --unit m --line 5,0,5,20 --out measured",
+        "sweep study.json --out swept",
+        "estimate long.json --error time_secs=5%",
+        "reproduce all --out reproduced",
+        "calibrate steer --out calibrated",
+        "bench stages --out benched",
+        "accuracy --out accurate",
+        "stress --out stressed",
+        "verify --out verified",
+        "validate --out validated",
+    ] {
+        let mut child = Command::new(crate::common::program::PROGRAM)
+            .args(typed.split(' '))
+            .current_dir(folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(1500));
+        if let Some(status) = child.try_wait().unwrap() {
+            let output = child.wait_with_output().unwrap();
+            panic!("{typed} has ended: {status}: {}", stderr(&output));
+        }
+        let number = child.id().to_string();
+        assert!(
+            Command::new("kill")
+                .args(["-TERM", &number])
+                .status()
+                .unwrap()
+                .success()
+        );
+        let start = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait().unwrap() {
+                break status;
+            }
+            if start.elapsed() > Duration::from_secs(60) {
+                child.kill().unwrap();
+                panic!("{typed} goes on after SIGTERM");
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        };
+        assert!(
+            status.code() == Some(143) || status.signal() == Some(15),
+            "{typed}: {status}"
+        );
+        // Neither half of a picture nor a temporary file is left.
+        let names = fs::read_dir(folder.path()).unwrap().flatten();
+        let names = names.map(|entry| entry.file_name().into_string().unwrap());
+        let left: Vec<String> = names.filter(|name| name.contains('.')).collect();
+        assert_eq!(left.len(), 3, "{typed}: {left:?}");
+    }
+}
+
 #[test]
 fn a_second_ctrl_c_ends_the_run_at_once() {
     let folder = tempfile::tempdir().unwrap();

@@ -40,7 +40,7 @@ fn what_is_larger_than_the_machine_is_refused_with_the_estimate_and_the_fix() {
         NEED.check("f.json", 100, 256_000_000)
             .unwrap_err()
             .to_string(),
-        "f.json: 1000000 agents (600000 of them from sources and entrances) and 12 walls would take 723 MB of memory \
+        "f.json: 1000000 agents (600000 of them from sources and entrances) and 12 walls would take 779 MB of memory \
          (100 MB of it to write files), and this machine has 256 MB: use fewer agents, a shorter run \
          (--until) if they enter later, or a larger machine"
     );
@@ -54,7 +54,7 @@ fn lists_of_walls_count() {
     };
     let said = need.check("f.json", 0, 1 << 30).unwrap_err().to_string();
     assert!(
-        said.contains("5.62 GB of memory (5.00 GB of it to list walls near agents)"),
+        said.contains("5.68 GB of memory (5.00 GB of it to list walls near agents)"),
         "{said}"
     );
     assert!(

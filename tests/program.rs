@@ -41,6 +41,8 @@ mod read;
 mod read_hdf5;
 mod recording;
 mod recording_views;
+mod report_pictures;
+mod report_tables;
 mod reports;
 mod reproduction;
 mod resumed_program;

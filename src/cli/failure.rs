@@ -46,6 +46,14 @@ pub enum Failure {
     /// `reproduce`, `accuracy` or `stress` failed: exit code 1.
     #[error(transparent)]
     Reproduce(#[from] LabError),
+    /// A signal ended a run without files: exit code 130 or 143.
+    #[error("interrupted at {time:.2} s; nothing is written")]
+    Stopped {
+        /// The time of the last frame, seconds.
+        time: f64,
+        /// The exit code, 128 + the signal's number.
+        exit_code: u8,
+    },
     /// A signal ended the run: exit code 130 or 143.
     #[error("interrupted at {time:.2} s; results and files end there")]
     Interrupted {
@@ -61,7 +69,7 @@ impl Failure {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Fault(_) | Self::Output(_) | Self::Reproduce(_) => 1,
-            Self::Interrupted { exit_code, .. } => *exit_code,
+            Self::Interrupted { exit_code, .. } | Self::Stopped { exit_code, .. } => *exit_code,
             Self::Scenario(_) | Self::Input(_) => 2,
             Self::Read(_) | Self::Measure(_) | Self::Study(_) | Self::Drawing(_) => 2,
         }

@@ -7,7 +7,7 @@ use super::interrupt::Interrupt;
 use super::watch::Progress;
 use crate::engine::simulation::Simulation;
 use crate::runs::case::Source;
-use crate::runs::drive::{End, Observer, Run};
+use crate::runs::drive::{Observer, Run};
 use crate::runs::outputs::Outputs;
 use crate::scenario::Scenario;
 
@@ -27,20 +27,27 @@ pub fn scenario(
     }
 }
 
-/// The run of a scenario to its end.
-pub fn to_the_end(scenario: Scenario) -> Result<Run, Failure> {
-    let mut run = Run::new(scenario)?;
+/// Drives a run to its end, which `more` observes, too.
+///
+/// # Errors
+/// The simulation fails, an observer does, or a signal arrives.
+pub fn to_the_end<'a>(
+    run: &mut Run,
+    more: impl IntoIterator<Item = Box<dyn Observer<Failure> + Send + 'a>>,
+) -> Result<(), Failure> {
     let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
     let interrupted = || interrupt.exit_code().is_some();
     let progress = Progress::new(run.scenario.duration_secs);
-    let mut observers: Vec<Box<dyn Observer<Failure> + Send>> = vec![Box::new(progress)];
-    let end = rayon::scope(|_| run.drive(&mut observers, interrupted))?;
-    match (interrupt.exit_code(), end) {
-        (Some(exit_code), End::Interrupted) => {
+    let mut observers: Vec<Box<dyn Observer<Failure> + Send + 'a>> = vec![Box::new(progress)];
+    observers.extend(more);
+    let driven = rayon::scope(|_| run.drive(&mut observers, interrupted));
+    driven.map_err(|failure| failure.with_forces(&mut run.simulation))?;
+    match interrupt.exit_code() {
+        Some(exit_code) => {
             let time = run.simulation.frame().clock.time();
-            Err(Failure::Interrupted { time, exit_code })
+            Err(Failure::Stopped { time, exit_code })
         }
-        _ => Ok(run),
+        None => Ok(()),
     }
 }
 
@@ -56,11 +63,16 @@ pub fn advance(
         progress.show(simulation);
         simulation.step()?;
         if simulation.frame().agents.count_present() == 0 && !simulation.expects_agents() {
-            let time = simulation.frame().clock.time();
-            return Err(Failure::Input(format!(
-                "{option}: no agents are left at that time: the last one leaves at {time:.2} s"
-            )));
+            return Err(none_left(option, simulation));
         }
     }
     Ok(())
+}
+
+/// `option` asks for a time at which no agents are left.
+pub fn none_left(option: &str, simulation: &Simulation) -> Failure {
+    let time = simulation.frame().clock.time();
+    Failure::Input(format!(
+        "{option}: no agents are left at that time: the last one leaves at {time:.2} s"
+    ))
 }

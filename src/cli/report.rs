@@ -1,5 +1,6 @@
 //! `sandbox report`: the document that is handed in with a run or a study.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -8,18 +9,18 @@ use serde_json::{Value, json};
 use super::arguments::{SceneOptions, use_threads};
 use super::failure::Failure;
 use super::inputs::scenario;
-use super::moment::to_the_end;
+use super::moment::{none_left, to_the_end};
 use super::terminal::tell;
 use super::values::{document, seconds};
-use super::watch::Progress;
-use crate::lab::report::{Sources, moments, of_run, of_study, pictures};
+use crate::lab::report::{InputFile, Sources, Watched, of_run, of_study};
 use crate::lab::sweep::{Gathered, Study};
-use crate::output::document::{Document, print};
+use crate::output::document::Document;
 use crate::runs::case::Source;
+use crate::runs::drive::{End, Observer, Run};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::runs::store::Store;
-use crate::runs::summary::Summary;
 use crate::scenario::measurements::Measurement;
+use crate::scenario::quote::shown;
 use crate::scenario::{Scenario, read_text};
 
 pub const EXAMPLES: &str = "\
@@ -61,7 +62,7 @@ pub fn run(options: &ReportOptions) -> Result<(), Failure> {
         Path::new(stem).with_added_extension("html")
     });
     let mut outputs = Outputs::new(program.force);
-    outputs.writes("--out", &out, Manner::InPlace);
+    outputs.writes("--out", &out, Manner::File);
     let report = match study(options)? {
         Some(study) => of_results(&study, options, outputs)?,
         None => of_scenario(options, outputs)?,
@@ -72,7 +73,7 @@ pub fn run(options: &ReportOptions) -> Result<(), Failure> {
     tell(
         program.json,
         || json!({"file": file, "title": title, "parts": blocks}),
-        || format!("{file}: {title}\n"),
+        || format!("{file}: {}\n", shown(title)),
     )
 }
 
@@ -141,36 +142,76 @@ fn of_scenario(options: &ReportOptions, mut outputs: Outputs) -> Result<Document
     let until = options.until.map(|secs| ("--until", secs));
     let mut whole = scenario(&source, &options.scene, until, 0, &mut outputs)?;
     outputs.check()?;
+    let ends = whole.duration_secs;
+    if let Some(late) = options.at.iter().find(|&&at| at > ends) {
+        return Err(Failure::Input(format!(
+            "--at {late}: the run ends at {ends} s; give an earlier time, or a later end with --until"
+        )));
+    }
+    let mut files: Vec<InputFile> = whole.files.iter().map(input).collect();
+    if let Source::File(path) = &source {
+        files.insert(0, input(&("scenario", path.clone())));
+    }
+    files.extend(
+        options
+            .scene
+            .geometry
+            .iter()
+            .map(|path| input(&("--geometry", path.clone()))),
+    );
     complete(&mut whole);
-    let run = to_the_end(whole)?;
-    let mut times = match options.at.is_empty() {
-        true => moments(&Summary::of(&run)),
-        false => [0.0]
-            .into_iter()
-            .chain(options.at.iter().copied())
-            .collect(),
-    };
-    times.sort_by(f64::total_cmp);
-    let progress = Progress::new(times.last().copied().unwrap_or_default());
-    let pictures = rayon::scope(|_| {
-        pictures(&run.scenario, &times, &print(), |simulation| {
-            progress.show(simulation)
-        })
-    })?;
+    let mut watched = Watched::new(&whole, &options.at);
+    let mut run = Run::new(whole)?;
+    Watched::prepare(&mut run.simulation);
+    let watch: Box<dyn Observer<Failure> + Send> = Box::new(Watch(&mut watched));
+    to_the_end(&mut run, [watch])?;
     let words = words(options);
     let command = match &source {
         Source::BuiltIn(_) => format!("sandbox {}", words.join(" ")),
         Source::File(_) => format!("sandbox run {}", words.join(" ")),
     };
-    let report = format!("sandbox report {}", words.join(" "));
-    Ok(of_run(
-        &run,
-        Sources {
-            command: &command,
-            report: &report,
-            pictures,
-        },
-    ))
+    let at = options.at.iter().map(|at| format!("--at {at}"));
+    let report = words.iter().cloned().chain(at).collect::<Vec<_>>();
+    let report = format!("sandbox report {}", report.join(" "));
+    let sources = Sources {
+        command: &command,
+        report: &report,
+        files,
+    };
+    let unread = |error: std::io::Error| Failure::Input(format!("{}: {error}", options.run));
+    of_run(&run, &watched, sources).map_err(unread)
+}
+
+/// A file of the run; `key` names it.
+fn input((key, path): &(&'static str, PathBuf)) -> InputFile {
+    InputFile {
+        what: (*key).to_owned(),
+        path: path.clone(),
+    }
+}
+
+/// Lets the report watch the run, and ends it if no agents are left for a picture.
+struct Watch<'a>(&'a mut Watched);
+
+impl Observer<Failure> for Watch<'_> {
+    fn observe(&mut self, run: &Run, _: f64, then: ControlFlow<End>) -> Result<(), Failure> {
+        let simulation = &run.simulation;
+        self.0.see(simulation);
+        let Some(missing) = self.0.missing() else {
+            return Ok(());
+        };
+        let is_empty = simulation.frame().agents.count_present() == 0;
+        let option = format!("--at {missing}");
+        match then {
+            _ if is_empty && !simulation.expects_agents() => Err(none_left(&option, simulation)),
+            ControlFlow::Break(end) if end != End::Interrupted => Err(Failure::Input(format!(
+                "{option}: the run ends at {:.2} s: {}",
+                simulation.frame().clock.time(),
+                run.reason()
+            ))),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Adds the measurements that every report has. They change no result.

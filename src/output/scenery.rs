@@ -8,6 +8,7 @@ use crate::engine::geometry::Ring;
 use crate::engine::journeys::{Kind, Place, Queue, Status, Trip, Zone};
 use crate::engine::math::{Vector, bounds, direction, perpendicular};
 use crate::engine::scene::{Goal, Group, Scene};
+use crate::engine::simulation::Simulation;
 use crate::output::colors::Rgb;
 use crate::scenario::floor_plan::Label;
 
@@ -215,6 +216,13 @@ pub fn hatching(ring: &Ring, apart: f64) -> Vec<[Vector; 2]> {
 
 /// A goal, and the groups whose agents want to go there.
 pub type GoalOf = (Vector, BTreeSet<u16>);
+
+/// Whether place `k` is an exit or a door that is closed now.
+pub fn is_closed(simulation: &Simulation, k: usize) -> bool {
+    let kind = &simulation.scene().journeys.places[k].kind;
+    let state = simulation.progress().places.get(k);
+    matches!(kind, Kind::Exit(_) | Kind::Door(_)) && state.is_some_and(|state| !state.open)
+}
 
 /// The distinct goals of agents and sources without journeys, each with its groups. A source with a goal per agent
 /// contributes the goals of its first entry.

@@ -11,7 +11,7 @@ use crate::scenario::measurements::Metrics;
 
 /// A run of a scenario, with its measurements.
 pub struct Run {
-    /// The scenario. The initial agents have entered; they are left out unless some were moved to a free place.
+    /// The scenario, with its initial agents.
     pub scenario: Scenario,
     /// Its simulation.
     pub simulation: Simulation,
@@ -59,11 +59,8 @@ impl Run {
     /// # Errors
     /// An initial agent cannot enter.
     pub fn new(mut scenario: Scenario) -> Result<Self, Fault> {
+        scenario.scene.agents.shrink_to_fit();
         let mut simulation = Simulation::new(scenario.scene.clone())?;
-        // The initial agents of a large crowd are not kept twice; a note tells from where some were moved.
-        if simulation.outcome().displaced.is_empty() {
-            scenario.scene.agents = Vec::new();
-        }
         let metrics = Metrics::new(&scenario.measurements, &mut simulation);
         Ok(Self {
             scenario,

@@ -17,6 +17,12 @@ pub const ENGINE: &str = env!("SANDBOX_ENGINE");
 #[serde(transparent)]
 pub struct Identity(String);
 
+/// The SHA-256 of a file's contents, 64 hexadecimal digits.
+pub fn sha256(contents: &[u8]) -> String {
+    let digest = Sha256::digest(contents);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 impl Identity {
     /// The identity of the result of a job of this kind for this input.
     pub fn of(kind: &str, input: impl fmt::Display) -> Self {

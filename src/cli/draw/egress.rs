@@ -11,12 +11,13 @@ use crate::cli::moment;
 use crate::cli::terminal::tell;
 use crate::lab::egress::Egress;
 use crate::runs::case::Source;
+use crate::runs::drive::Run;
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::trajectories::{ReadOptions, Unit};
 
 /// Draws the curve, and prints the table.
 pub fn draw(options: &DrawOptions, out: &Path, mut outputs: Outputs) -> Result<(), Failure> {
-    outputs.writes("--out", out, Manner::InPlace);
+    outputs.writes("--out", out, Manner::File);
     let path = Path::new(&options.run);
     let (title, egress) = match extension(path).as_str() {
         "rrd" => {
@@ -59,6 +60,7 @@ fn simulated(options: &DrawOptions, mut outputs: Outputs) -> Result<(String, Egr
     let source = Source::named(&options.run);
     let whole = scenario(&source, &options.scene, None, 0, &mut outputs)?;
     outputs.check()?;
-    let run = moment::to_the_end(whole)?;
+    let mut run = Run::new(whole)?;
+    moment::to_the_end(&mut run, [])?;
     Ok((run.scenario.name.clone(), Egress::of(&run.simulation)))
 }

@@ -19,6 +19,7 @@ use super::arguments::{SceneOptions, use_threads};
 use super::failure::Failure;
 use super::frames::{Run, recorded, tracked};
 use super::inputs::NO_WALLS;
+use super::interrupt::Interrupt;
 use super::moment;
 use super::terminal::tell;
 use super::watch::bar;
@@ -101,7 +102,7 @@ pub fn run(options: &DrawOptions) -> Result<(), Failure> {
         Animation::check(&out)?;
     }
     let (mut run, paths) = open(options, &times, &mut outputs)?;
-    outputs.writes("--out", &out, Manner::InPlace);
+    outputs.writes("--out", &out, Manner::File);
     outputs.check()?;
     check_times(&run, &times)?;
     rayon::scope(|_| draw(options, (&mut run, paths), &times, &out))?;
@@ -268,7 +269,8 @@ fn draw(
     approach(run, &mut trails, [start, times.from])?;
     let color = color(options, run.body_mass.is_some());
     let mut look = Look::new(run, color, options.field.as_deref(), options.range)?;
-    let mut animation = None;
+    // A signal ends an animation after a frame, and removes what is written of it.
+    let (mut animation, mut interrupt) = (None, None);
     let length = u64::from(if times.is_animation { times.count } else { 0 });
     let progress = bar(length, "{bar:30} {pos} of {len} frames, {eta} left");
     for k in 0..times.count {
@@ -299,10 +301,16 @@ fn draw(
             Some(animation) => animation,
             none => {
                 let length = (times.count, times.fps);
+                let unheard = |error: std::io::Error| Failure::Output(error.to_string());
+                interrupt = Some(Interrupt::listen().map_err(unheard)?);
                 none.insert(Animation::create(out, &image, length, &print)?)
             }
         };
         animation.add(image)?;
+        if let Some(exit_code) = interrupt.as_ref().and_then(Interrupt::exit_code) {
+            let time = times.at(k);
+            return Err(Failure::Stopped { time, exit_code });
+        }
         progress.inc(1);
     }
     Ok(animation.map_or(Ok(()), Animation::finish)?)

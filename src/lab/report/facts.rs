@@ -151,7 +151,7 @@ pub fn measured(measurement: &Measurement, run: &Summary) -> Vec<Fact> {
                 .map_or("–".to_owned(), |value| format!("{value:.3}")),
             None => "–".to_owned(),
         };
-        let unit = quantity.unit;
+        let unit = if value == "–" { "" } else { quantity.unit };
         Fact {
             value: format!("{value} {unit}").trim_end().to_owned(),
             name: quantity.name,

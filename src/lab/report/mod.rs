@@ -1,13 +1,18 @@
-//! Reports: what is handed in with a run or a study. Plan, settings, results with their definitions, pictures, the
-//! limits of the model, its status by the documents of this version, and how to run it again.
+//! Reports: what is handed in with a run or a study. Plan, people, doors, settings, results with their definitions,
+//! pictures, the limits of the model, the status of the profiles, and how to run it again.
 
 mod facts;
 mod limits;
-mod pictures;
+mod passages;
+mod peaks;
+mod people;
 mod run;
 mod settings;
+mod status;
+mod still;
 mod study;
+mod watched;
 
-pub use pictures::{moments, pictures};
-pub use run::{Sources, of_run};
+pub use run::{InputFile, Sources, of_run};
 pub use study::of_study;
+pub use watched::Watched;

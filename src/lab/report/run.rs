@@ -1,15 +1,31 @@
 //! The report of one run.
 
-use super::{facts, limits, settings};
+use std::path::PathBuf;
+use std::{fs, io};
+
+use super::still::Still;
+use super::watched::Watched;
+use super::{facts, limits, people, settings, status};
+use crate::engine::simulation::Simulation;
 use crate::lab::egress::Egress;
-use crate::output::document::{Block, Document};
-use crate::output::plot::Sheet;
+use crate::lab::gallery::distinct;
+use crate::output::document::{Block, Document, print};
 use crate::output::results;
+use crate::output::table::Table;
 use crate::runs::drive::Run;
-use crate::runs::identity::{ENGINE, Identity};
-use crate::runs::summary::{JourneyResult, Summary};
+use crate::runs::identity::{ENGINE, Identity, sha256};
+use crate::runs::summary::{JourneyResult, PlaceResult, Summary};
 use crate::scenario::Scenario;
 use crate::scenario::measurements::Measurement;
+use crate::scenario::quote::shown;
+
+/// A file that a run reads.
+pub struct InputFile {
+    /// What it is.
+    pub what: String,
+    /// Its path.
+    pub path: PathBuf,
+}
 
 /// Where a report comes from.
 pub struct Sources<'a> {
@@ -17,77 +33,157 @@ pub struct Sources<'a> {
     pub command: &'a str,
     /// The command that makes the report.
     pub report: &'a str,
-    /// Pictures with their times, seconds.
-    pub pictures: Vec<(f64, Sheet)>,
+    /// The files that it reads.
+    pub files: Vec<InputFile>,
 }
 
-/// The report of a run that has ended.
-pub fn of_run(run: &Run, sources: Sources) -> Document {
+/// The report of a run that has ended, and was watched from its first frame on.
+///
+/// # Errors
+/// A file of the run cannot be read.
+pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> io::Result<Document> {
     let (scenario, simulation) = (&run.scenario, &run.simulation);
     let summary = Summary::of(run);
     let mut blocks = vec![Block::heading("Results")];
     let overview = facts::overview(&summary, &run.reason());
     blocks.push(Block::Table(facts::table(&overview), String::new()));
     blocks.extend(facts::stuck(&summary));
-    blocks.extend(about(scenario, &summary));
-    let mut pictures = sources.pictures.into_iter();
-    let plan = pictures.next().map(|(time, sheet)| {
-        let caption = format!("The plan with the agents at {time:.2} s, before they walk.");
-        Block::figure(sheet, caption)
-    });
-    blocks.extend(plan);
+    let mut pictures = pictures(run, watched).into_iter();
+    blocks.push(Block::heading("Scenario"));
+    blocks.push(about(scenario, &summary));
+    blocks.push(files(&sources.files)?);
+    blocks.extend(pictures.next());
+    blocks.push(Block::heading("People"));
+    blocks.push(people::table(scenario, &watched.passages));
+    if let Some(table) = watched.passages.table(&scenario.scene) {
+        blocks.push(Block::heading("Exits, doors and gates"));
+        blocks.push(table);
+    }
+    blocks.extend(waits(&summary.places));
     blocks.push(Block::heading("Settings that differ from the defaults"));
     blocks.push(settings::changed(scenario));
-    let egress = Egress::of(simulation);
-    if !egress.exits.is_empty() {
-        blocks.push(Block::heading("Egress"));
-        let caption = "People out over time: the number of agents that have reached their exit or goal. Dashed: when \
-                       50, 95 and 100 % of the agents that entered had left.";
-        blocks.push(Block::figure(egress.sheet(""), caption));
-        let caption = "Shares are of the people who left. 50 %, 95 % and all of an exit are of the people who left \
-                       there, of the last row of all who entered. Goals: people without an exit.";
-        blocks.push(Block::Table(egress.table(), caption.to_owned()));
-        blocks.extend(journeys(&summary.journeys));
-    }
+    blocks.extend(egress(simulation, &summary));
     blocks.push(Block::heading(
         "Flows, densities, levels of service, exposure",
     ));
     let measurements = scenario.measurements.iter();
     blocks.extend(measurements.filter_map(|one| measured(one, &summary)));
     blocks.push(Block::text(facts::DENSITY));
-    let later: Vec<(f64, Sheet)> = pictures.collect();
-    if !later.is_empty() {
-        blocks.push(Block::heading("Pictures"));
-    }
-    blocks.extend(later.into_iter().map(|(time, sheet)| {
-        Block::figure(
-            sheet,
-            format!("The agents after {time:.2} s, colored by SPH density."),
-        )
-    }));
-    blocks.extend(limits::limits(&[scenario.profile_name.as_str()]));
-    blocks.extend(limits::status());
+    blocks.push(Block::heading("Pictures"));
+    blocks.extend(pictures);
+    blocks.extend(highest(scenario, watched));
+    let groups = scenario.scene.groups.iter();
+    let profiles = distinct(groups.map(|group| group.blend.name.as_str()));
+    blocks.extend(limits::limits(&profiles));
+    blocks.extend(status::status(
+        &profiles,
+        settings::changes_profile(scenario),
+    ));
     blocks.extend(again(scenario, &summary, sources.command, sources.report));
-    Document {
+    Ok(Document {
         title: format!("Report on the run {}", scenario.name),
         subtitle: scenario.description.clone(),
         blocks,
+    })
+}
+
+/// The pictures of the run, the first one first.
+fn pictures(run: &Run, watched: &Watched) -> Vec<Block> {
+    let entered = run.simulation.frame().agents.entered();
+    let pictures = watched.pictures(entered).into_iter();
+    let figure = |(still, caption): (&Still, String)| {
+        let colors = "Colors: the SPH densities at the agents.";
+        let sheet = still.sheet(&run.scenario, &print());
+        Block::figure(sheet, format!("{caption} {colors}"))
+    };
+    pictures.map(figure).collect()
+}
+
+/// The map of the highest densities; nothing without agents.
+fn highest(scenario: &Scenario, watched: &Watched) -> Option<Block> {
+    let peaks = &watched.peaks;
+    let most = peaks.highest()?;
+    let caption = format!(
+        "The highest SPH density over the run at an agent in each cell of {} m; cells without color had no agent. \
+         The highest of all is {most:.2} P/m².",
+        peaks.cell
+    );
+    Some(Block::figure(peaks.sheet(scenario, &print()), caption))
+}
+
+/// How people leave; nothing if nobody does.
+fn egress(simulation: &Simulation, summary: &Summary) -> Vec<Block> {
+    let egress = Egress::of(simulation);
+    if egress.exits.is_empty() {
+        return Vec::new();
     }
+    let curve = "People out over time: the number of agents that have reached their exit or goal. Dashed: when 50, \
+                 95 and 100 % of the agents that entered had left.";
+    let table = "Shares are of the people who left. 50 %, 95 % and all of an exit are of the people who left there, of \
+                 the last row of all who entered. Goals: people without an exit.";
+    let blocks = [
+        Block::heading("Egress"),
+        Block::figure(egress.sheet(""), curve),
+        Block::Table(egress.table(), table.to_owned()),
+    ];
+    let blocks = blocks.into_iter().chain(journeys(&summary.journeys));
+    blocks.collect()
 }
 
 /// The scenario in a few lines.
-fn about(scenario: &Scenario, summary: &Summary) -> Vec<Block> {
+fn about(scenario: &Scenario, summary: &Summary) -> Block {
     let clock = scenario.scene.clock;
-    let text = format!(
-        "{} agents behave by the profile `{}`, except where a group has its own; seed {}; at most {} s in steps of {} \
-         s.",
-        summary.agents,
-        scenario.profile_name,
+    Block::text(format!(
+        "One run with seed {}: {} agents behave by the profile `{}`, except where a group has its own; at most {} s in \
+         steps of {} s. How much the results differ between seeds is not known from one run: `sandbox sweep` with \
+         `seeds` and a report on that study say it.",
         scenario.seed,
+        summary.agents,
+        shown(&scenario.profile_name),
         scenario.duration_secs,
         clock.time_step(),
-    );
-    vec![Block::heading("Scenario"), Block::text(text)]
+    ))
+}
+
+/// The files of the run with their digests.
+fn files(files: &[InputFile]) -> io::Result<Block> {
+    let row = |file: &InputFile| -> io::Result<[String; 3]> {
+        let digest = sha256(&fs::read(&file.path)?);
+        let name = file.path.file_name().unwrap_or_default().to_string_lossy();
+        Ok([shown(&name), file.what.clone(), digest])
+    };
+    let rows: Vec<[String; 3]> = files.iter().map(row).collect::<Result<_, _>>()?;
+    if rows.is_empty() {
+        return Ok(Block::text(
+            "The scenario and its floor plan are built into the program.",
+        ));
+    }
+    let table = Table::of(&rows)
+        .column("file", |[name, ..]| name.as_str())
+        .column("what", |[_, what, _]| what.as_str())
+        .column("SHA-256", |[.., digest]| digest.as_str())
+        .table();
+    let caption = "The version of the plan: a file with another digest is another plan.";
+    Ok(Block::Table(table, caption.to_owned()))
+}
+
+/// Waiting areas and queues; nothing without any.
+fn waits(places: &[PlaceResult]) -> Vec<Block> {
+    let waits = |place: &&PlaceResult| ["waiting area", "queue"].contains(&place.kind.as_str());
+    let rows: Vec<&PlaceResult> = places.iter().filter(waits).collect();
+    let table = Table::of(&rows)
+        .column("place", |row| shown(&row.name))
+        .column("kind", |row| row.kind.as_str())
+        .column("people", |row| row.passed)
+        .fixed("mean wait [s]", 1, |row| row.waited_secs)
+        .table();
+    match rows.is_empty() {
+        true => Vec::new(),
+        false => vec![
+            Block::heading("Waiting areas and queues"),
+            Block::Table(table, "People: those who have left it.".to_owned()),
+        ],
+    }
 }
 
 /// The journeys; nothing without any.

@@ -62,6 +62,13 @@ pub fn changed(scenario: &Scenario) -> Block {
     Block::Table(table, caption.to_owned())
 }
 
+/// Whether a scenario changes parameters of its profiles.
+pub fn changes_profile(scenario: &Scenario) -> bool {
+    let own = scenario.document.get("parameters");
+    let own = own.and_then(Value::as_object);
+    own.is_some_and(|own| !own.is_empty())
+}
+
 fn is_equal(value: &str, default: &str) -> bool {
     let numbers = [value, default].map(|text| text.parse::<f64>().ok());
     matches!(numbers, [Some(a), Some(b)] if a == b)

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{facts, limits, settings};
+use super::{facts, limits, settings, status};
 use crate::analysis::statistics::MeanStd;
 use crate::lab::curves::{BAND, Curve, curves, panel};
 use crate::lab::error::LabError;
@@ -86,9 +86,13 @@ pub fn of_study(gathered: &Gathered, [command, report]: [&str; 2]) -> Result<Doc
         )));
         blocks.push(settings::changed(scenario));
     }
-    let profiles = distinct(scenarios.iter().map(|one| one.profile_name.as_str()));
+    let groups = scenarios.iter().flat_map(|one| &one.scene.groups);
+    let profiles = distinct(groups.map(|group| group.blend.name.as_str()));
     blocks.extend(limits::limits(&profiles));
-    blocks.extend(limits::status());
+    blocks.extend(status::status(
+        &profiles,
+        scenarios.iter().any(settings::changes_profile),
+    ));
     blocks.push(Block::heading("How to run it again"));
     blocks.push(Block::Code(vec![command.to_owned(), report.to_owned()]));
     blocks.push(Block::Table(cells(gathered), format!(

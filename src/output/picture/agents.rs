@@ -116,8 +116,11 @@ pub fn trails(picture: &Picture) -> Vec<Mark> {
     lines.map(|line| Mark::Line(line, style.clone())).collect()
 }
 
-/// The time, and the number of agents.
+/// The line above a picture: the time and the number of agents, unless it has its own.
 pub fn summary(picture: &Picture) -> String {
+    if let Some(heading) = &picture.heading {
+        return heading.clone();
+    }
     let count = picture.crowd.len();
     let ending = if count == 1 { "" } else { "s" };
     format!("{:.2} s, {count} agent{ending}", picture.crowd.time)

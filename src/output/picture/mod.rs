@@ -45,6 +45,8 @@ const MARGIN: f64 = 10.0;
 pub struct Picture<'a> {
     /// Its title.
     pub title: String,
+    /// The line above its panel; `None`: the time and the number of agents.
+    pub heading: Option<String>,
     /// Walls and places.
     pub scene: &'a Scene,
     /// The people.
@@ -52,6 +54,8 @@ pub struct Picture<'a> {
     /// The simulation of these people, in the same order, if there is one: for their activities, for open and closed
     /// places, for ways and forces on walls. Its frame must be evaluated.
     pub simulation: Option<&'a Simulation>,
+    /// The numbers of places that are closed, without a simulation.
+    pub closed: &'a [usize],
     /// The part of the plane that it shows at least.
     pub view: Region,
     /// The colors of people; `None`: by their activities.
@@ -158,9 +162,11 @@ impl<'a> Picture<'a> {
     pub fn of_scene((scene, crowd): (&'a Scene, &'a Crowd), title: String, view: Region) -> Self {
         Self {
             title,
+            heading: None,
             scene,
             crowd,
             simulation: None,
+            closed: &[],
             view,
             coloring: None,
             field: None,

@@ -124,10 +124,9 @@ pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark
     for (k, place) in all.iter().enumerate() {
         let color = scenery::color(&place.kind);
         let lines: Vec<Vector> = scenery::lines(place);
-        let progress = picture.simulation.map(|simulation| simulation.progress());
-        let state = progress.and_then(|progress| progress.places.get(k));
-        let can_close = matches!(place.kind, Kind::Exit(_) | Kind::Door(_));
-        let is_closed = can_close && state.is_some_and(|state| !state.open);
+        let simulation = picture.simulation;
+        let is_closed = picture.closed.contains(&k)
+            || simulation.is_some_and(|simulation| scenery::is_closed(simulation, k));
         let style = match &place.kind {
             Kind::Exit(_) | Kind::Door(_) if is_closed => Style::full(CLOSED, 3.4, ""),
             Kind::Exit(_) => Style::full(color, 3.4, ""),

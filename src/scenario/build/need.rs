@@ -23,7 +23,7 @@ const PROGRAM: u64 = 12 << 20;
 /// | 10,000 | 13.4 | 13.0 | 18.1 |
 /// | 100,000 | 54.8 | 47.1 | 67.6 |
 /// | 1,000,000 | 465 | – | 563 |
-const AGENT: u64 = 550;
+const AGENT: u64 = 690;
 /// Memory per agent that enters later, bytes: growing arrays have spare capacity.
 const LATER_AGENT: u64 = 650;
 /// Memory per corner of an obstacle, with its wall and its share of the indices, bytes.
