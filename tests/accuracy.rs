@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::common::program;
+use crate::common::{pictures, program};
 use sandbox::engine::boundary::WallMethod;
 use sandbox::lab::accuracy::{
     Kind, Lyapunov, Measured, Motion, SAMPLES, SCENES, Scene, Trial, better, cheapest, knobs,
@@ -206,10 +206,23 @@ fn the_command_writes_tables_and_pictures_and_keeps_finished_cases() {
         assert!(point["ms_per_s"]["median"].as_f64().unwrap() > 0.0);
         assert!(point["errors"][1]["error"].as_f64().unwrap() > 0.0);
     }
-    for file in ["accuracy.md", "accuracy.csv", "accuracy.json"] {
-        assert!(out.join(file).metadata().unwrap().len() > 0, "{file}");
+    let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
+    let kept: serde_json::Value = serde_json::from_str(&read("accuracy.json")).unwrap();
+    assert_eq!(kept["scenes"], report["scenes"]);
+    let (table, rows) = (read("accuracy.md"), read("accuracy.csv"));
+    for point in points {
+        let error = point["errors"][1]["error"].as_f64().unwrap();
+        assert!(rows.contains(&error.to_string()), "no {error} in {rows}");
     }
-    assert!(out.join("accuracy-wall.png").exists());
+    assert!(table.contains("precision"), "{table}");
+    let texts = [
+        "position at 0.4 s",
+        "velocity at 0.8 s",
+        "error [m]",
+        "precision",
+        "default",
+    ];
+    pictures::assert_has(&out.join("accuracy-wall"), &texts);
     let again = program::stderr(&run(&arguments));
     assert!(again.contains("0 case(s) to run, 1 kept"), "{again}");
 

@@ -201,7 +201,9 @@ fn an_existing_file_is_replaced_only_with_force() {
         "--force",
         "--json",
     ]);
-    assert!(std::fs::metadata(&file).unwrap().len() > 10_000);
+    let recording = crate::common::recording::Recording::read(&file);
+    let crowd = recording.pairs("world/agents", "Points2D:positions");
+    assert!(!crowd.is_empty() && crowd.iter().all(|(_, people)| people.len() == 400));
     let nowhere = folder.path().join("no/folder.rrd");
     refused(
         &[

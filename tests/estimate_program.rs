@@ -6,6 +6,7 @@ use std::path::Path;
 use sandbox::lab::estimate::{Prior, Series};
 use serde_json::Value;
 
+use crate::common::pictures;
 use crate::common::program::{json, refused, run, run_in, stderr};
 
 /// A small evacuation; `more` follows.
@@ -278,7 +279,8 @@ fn every_row_of_a_study_has_the_error_asked_for() {
     let table = fs::read_to_string(folder.path().join("study/study-estimate.csv")).unwrap();
     let head = "profile,time_secs,time_secs_error,time_secs_seeds,time_secs_step,time_secs_n";
     assert_eq!(table.lines().next(), Some(head));
-    assert!(folder.path().join("study/study-estimate.png").exists());
+    let texts = ["sph", "walk+sph", "profile", "time_secs"];
+    pictures::assert_has(&folder.path().join("study/study-estimate"), &texts);
     let sharded = [&arguments[..4], &["--shard", "1/2"]].concat();
     let refused = run_in(folder.path(), &sharded);
     assert_eq!(refused.status.code(), Some(2));

@@ -7,6 +7,7 @@ use sandbox::output::plot::{Cells, Mark, Panel, Point, Sheet};
 use sandbox::runs::store::Store;
 use tempfile::TempDir;
 
+use crate::common::pictures;
 use crate::common::sweep::folder;
 
 const STUDY: &str = r#"{"scenario": "room.json", "seeds": 3,
@@ -207,11 +208,29 @@ fn pictures_are_written_beside_the_tables_and_without_numbers_the_axis_has_names
     assert_eq!(names, ["sph", "sf->sph"]);
     let written = gathered.write(&store, Some(&sheet)).unwrap();
     assert_eq!(written.len(), study.files().len());
-    for path in written {
+    // Every result is in the files.
+    let read = |ending: &str| {
+        let path = written
+            .iter()
+            .find(|path| path.extension().unwrap() == ending);
+        fs::read_to_string(path.unwrap()).unwrap()
+    };
+    let (rows, texts) = (read("csv"), read("svg"));
+    for combination in gathered.combinations() {
+        for value in combination
+            .values("density_mean_0.2s")
+            .into_iter()
+            .flatten()
+        {
+            assert!(rows.contains(&value.to_string()), "no {value} in {rows}");
+        }
+    }
+    let texts = pictures::texts(&texts);
+    for name in ["sph", "sf->sph", "profile"] {
+        let name = name.replace('>', "&gt;");
         assert!(
-            fs::metadata(&path).unwrap().len() > 100,
-            "{}",
-            path.display()
+            texts.iter().any(|text| *text == name),
+            "no {name} in {texts:?}"
         );
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use crate::common::pictures;
 use crate::common::program::{refused, run, stderr, text};
 use crate::common::tracks::file_of_a_row;
 use sandbox::lab::suite::{Expected, Judgment};
@@ -123,7 +124,16 @@ fn scenes_with_data_are_compared_with_the_data_and_skipped_without() {
     let density = density.split('|').nth(4).unwrap().trim();
     let density: f64 = density.split(' ').next().unwrap().parse().unwrap();
     assert!((density - 0.8 / 0.64).abs() < 0.15, "{density}");
-    assert!(out.join("passages.svg").exists() && out.join("data-bottleneck.png").exists());
+    let texts = pictures::texts_of(&out.join("passages"));
+    assert!(
+        texts.iter().any(|text| text.contains("data-bottleneck")),
+        "{texts:?}"
+    );
+    let picture = image::open(out.join("data-bottleneck.png"))
+        .unwrap()
+        .to_rgb8();
+    let marks = picture.pixels().filter(|pixel| pixel.0 != [255; 3]).count();
+    assert!(marks > 1000, "{marks} pixels");
 
     let nowhere = folder.path().join("nowhere");
     refused(

@@ -1,6 +1,7 @@
 """Whole runs: results, pictures, files, PedPy."""
 
 import json
+import re
 import subprocess
 import sys
 
@@ -74,7 +75,11 @@ def test_a_run_can_be_drawn_saved_and_inspected(tmp_path, corridor):
     run.draw(at=1, out=tmp_path / "run.svg")
     assert "<svg" in (tmp_path / "run.svg").read_text()
     run.save(tmp_path / "run.rrd", record_every=25)
-    assert (tmp_path / "run.rrd").stat().st_size > 1000
+    # Everybody is in the recording.
+    picture = tmp_path / "recorded.svg"
+    program("draw", tmp_path / "run.rrd", "--at", 1, "--out", picture)
+    places = set(re.findall(r'<circle cx="(\d+)" cy="(\d+)"', picture.read_text()))
+    assert len(places) == (run.trajectory.frame == 10).sum()
     with pytest.raises(sc.Error, match="already exists"):
         run.save(tmp_path / "run.rrd")
     found = run.inspect(3, at=1)
