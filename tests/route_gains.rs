@@ -106,7 +106,7 @@ fn on_random_floors_the_quickest_ways_are_not_slower() {
     assert!(mean(&gains) > 0.0);
 }
 
-/// Exits of 0.9 and 1.3 m. People expected 1.2 P/s of the first, which passes 2.1 P/s, and nine too many took the second:
+/// Exits of 0.9 and 1.3 m. People expected 1.2 P/s of the first, which passes 2.1, and nine too many took the second:
 /// it took 10 % longer.
 #[test]
 fn nobody_takes_the_far_exit_while_the_near_one_is_free() {

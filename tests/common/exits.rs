@@ -33,8 +33,7 @@ pub fn floor(rng: &mut ChaCha8Rng, family: &str) -> Value {
     };
     let number = match family {
         "halls" => rng.random_range(40..120),
-        "corridors" => 60,
-        "rooms" => 60,
+        "corridors" | "rooms" => 60,
         _ => 40,
     };
     json!({
