@@ -299,7 +299,8 @@ fn people_can_get_to_all_lines_of_the_shipped_scenarios() {
         let Ok(scenario) = Scenario::load(&file, &[]) else {
             continue;
         };
-        for place in &scenario.scene.journeys.places {
+        let places = scenario.scene.journeys.places.iter();
+        for place in places.filter(|place| place.line().is_some()) {
             let whole = Place::new(place.name.clone(), place.kind.clone());
             assert_eq!(
                 place.goals,
@@ -308,7 +309,7 @@ fn people_can_get_to_all_lines_of_the_shipped_scenarios() {
                 file.display(),
                 place.name
             );
-            lines += usize::from(place.line().is_some());
+            lines += 1;
         }
     }
     assert!(lines > 50, "{lines}");

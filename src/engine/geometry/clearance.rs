@@ -113,7 +113,12 @@ impl LineAmongWalls {
         for &piece in &self.pieces {
             let is_gap = piece.iter().all(|&end| self.touches(end));
             let distance = if is_gap { gap } else { body } - TINY;
-            let stretches = self.stretches(piece, distance);
+            // A piece between a wall and an end of the line that is shorter than a body is no way on.
+            let is_short = !is_gap && self.pieces.len() > 1 && piece[1] - piece[0] < 2.0 * distance;
+            let stretches = match is_short {
+                true => Vec::new(),
+                false => self.stretches(piece, distance),
+            };
             middles.extend(
                 stretches
                     .iter()

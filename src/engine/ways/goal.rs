@@ -222,7 +222,7 @@ fn free_parts(floor: &Floor, [a, b]: [Vector; 2]) -> Vec<[Vector; 2]> {
 }
 
 /// Shorter parts of a line, such as one that reaches over a wall by rounding, are no goals, meters.
-const SHORTEST: f64 = 1e-6;
+const SHORTEST: f64 = 1e-5;
 /// Smaller gaps between the parts of a line come from rounding, as a fraction of its length.
 const GAP: f64 = 1e-9;
 
