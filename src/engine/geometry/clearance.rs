@@ -216,7 +216,7 @@ impl Beside {
         }
     }
 
-    /// The part of the line beside which the wall stops people, meters from the start of the line: where it is nearest, or
+    /// The part of the line beside which the wall stops people, meters from its start: where it is nearest, or
     /// all along a wall that is nearly parallel.
     fn least(&self) -> [f64; 2] {
         let [[x_a, y_a], [x_b, y_b]] = self.ends;

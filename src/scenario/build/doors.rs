@@ -93,7 +93,7 @@ fn check_apart(places: &[Place]) -> Result<(), Problem> {
         };
         if let Some((other, _)) = doors[..k].iter().find(is_on) {
             let reason = format!(
-                "`{}` lies on the line of `{}`: draw one door, with `one_way` and `closed_secs`, or move one of the two",
+                "`{}` lies on the line of `{}`: draw one door, with `one_way` and `closed_secs`, or move one of them",
                 shown(&door.name),
                 shown(&other.name)
             );

@@ -187,7 +187,7 @@ impl Prepared<'_> {
         Ok(())
     }
 
-    /// Checks that all agents can reach the places of the first stage of their journey, and from the parts of these that
+    /// Checks that all agents can reach the places of the first stage of their journey, and from the parts that
     /// they reach those of the next stages. Adds notes about the places that no agent can choose. Returns where people
     /// go on to the next stages.
     pub fn check_journeys(&self, ways: &Ways, notes: &mut Vec<String>) -> Result<Stops, Problem> {
