@@ -7,10 +7,11 @@ use crate::engine::journeys::Kind;
 use crate::engine::scene::Scene;
 use crate::engine::simulation::{EventKind, Limited, SPOT_RADIUS, Simulation};
 use crate::runs::drive::Run;
+use crate::scenario::measurements::LongestQueue;
 use crate::scenario::quote::shown;
 
 /// Prints notes on displaced agents, stopped moves, clamped speeds, agents that waited for room, queues that were too
-/// long for their line, and pushes without agents.
+/// long for their line or too dense, and pushes without agents.
 pub fn print(run: &Run) {
     let simulation = &run.simulation;
     let outcome = simulation.outcome();
@@ -64,6 +65,14 @@ pub fn print(run: &Run) {
                 queue.room()
             ));
         }
+    }
+    for packed in run
+        .metrics
+        .longest_queues(simulation)
+        .iter()
+        .filter_map(LongestQueue::packed)
+    {
+        talk(&format!("note: {packed}"));
     }
     for event in simulation.events() {
         if event.kind == EventKind::PushBegan(0) {

@@ -148,7 +148,10 @@ fn overview(run: &Run, summary: &Summary) -> String {
             } = outside;
             format!(" ({agents} more stood outside of its line, {mean_secs:.0} s each on average)")
         });
-        format!("{agents} before {before} after {secs:.0} s{outside}")
+        let density = queue.density_per_m2.map_or(String::new(), |density| {
+            format!(", at up to {density:.1} P/m²")
+        });
+        format!("{agents} before {before} after {secs:.0} s{density}{outside}")
     });
     line("longest queue", listed(queues.collect(), "none"));
     let stuck = match summary.stuck {

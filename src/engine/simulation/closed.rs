@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Simulation;
-use crate::engine::journeys::ChangeKind;
+use crate::engine::journeys::{Change, ChangeKind};
 use crate::engine::scene::Scene;
 use crate::engine::ways::{Rooms, Step};
 
@@ -54,13 +54,18 @@ impl Simulation {
     }
 }
 
-/// The time of the first change of a place after `now` at which `is_it` holds, seconds.
+/// The time of the first changes of places after `now`, all those of one instant together, after the last of which `is_it`
+/// holds, seconds.
 fn later(scene: &Scene, now: f64, mut is_it: impl FnMut(u16, ChangeKind) -> bool) -> Option<f64> {
-    let changes = scene.journeys.changes.iter();
-    let mut changes = changes.filter(|change| change.at > now);
-    changes
-        .find(|change| is_it(change.place, change.kind))
-        .map(|change| change.at)
+    let together = scene.journeys.changes.chunk_by(|a, b| a.at == b.at);
+    let mut later = together.filter(|changes| changes[0].at > now);
+    let holds = |changes: &&[Change]| {
+        let all = changes
+            .iter()
+            .map(|change| is_it(change.place, change.kind));
+        all.last().unwrap_or(false)
+    };
+    later.find(holds).map(|changes| changes[0].at)
 }
 
 /// Whether all ways to a goal that begin with one of some steps lead through a door that is not open.

@@ -103,17 +103,38 @@ pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
             ));
         }
     }
-    facts.extend(run.longest_queues.iter().map(|queue| {
-        Fact::new(
-            &format!("longest queue before {}", queue.before),
-            format!("{} agents at {:.0} s", queue.agents, queue.at_secs),
+    for queue in &run.longest_queues {
+        let before = &queue.before;
+        facts.push(Fact::new(
+            &format!("longest queue before {before}"),
+            format!("{} people at {:.0} s", queue.agents, queue.at_secs),
             format!(
-                "most agents at one time that walk there slower than {SLOW} of their preferred speed, from there up to \
-                 the first gap of {GAP} m along their ways, without those who have just started; of a queue with a \
-                 line, those who stand in it"
+                "most people at one time whose way leads there and who are slower than {SLOW} of their preferred \
+                 speed, from there up to the first gap of {GAP} m along their ways, without those who have just \
+                 started; of a queue with a line, those who have joined it"
             ),
-        )
-    }));
+        ));
+        if let Some(outside) = &queue.outside {
+            facts.push(Fact::new(
+                &format!("outside of the line of {before}"),
+                format!("{} people at {:.0} s", outside.agents, outside.at_secs),
+                format!(
+                    "most people at one time who found no room on its line; {} stood there, {:.0} s each on average",
+                    outside.people, outside.mean_secs
+                ),
+            ));
+        }
+        if let Some(density) = queue.density_per_m2 {
+            let packed = queue
+                .packed()
+                .map_or(String::new(), |packed| format!("; {packed}"));
+            facts.push(Fact::new(
+                &format!("density of those who wait before {before}"),
+                format!("{density:.1} P/m²"),
+                format!("the highest median of the SPH densities at five or more of them{packed}"),
+            ));
+        }
+    }
     facts
 }
 

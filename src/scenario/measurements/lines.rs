@@ -43,19 +43,26 @@ struct Seen {
 }
 
 impl Lines {
-    /// Observes the queue at place `number`.
-    pub(super) fn observe(&mut self, simulation: &Simulation, number: u16, line: &Queue) {
-        let ids = ids(simulation, number, line);
-        if ids.is_empty() {
-            return;
+    /// Observes the queue at place `number`. Returns the agents outside of its line.
+    pub(super) fn observe(
+        &mut self,
+        simulation: &Simulation,
+        number: u16,
+        line: &Queue,
+    ) -> Vec<usize> {
+        let outside = outside(simulation, number, line);
+        if outside.is_empty() {
+            return outside;
         }
+        let frame = simulation.frame();
         let seen = self.0.entry(number).or_default();
-        if ids.len() as u32 > seen.most.0 {
-            seen.most = (ids.len() as u32, simulation.frame().clock.time());
+        if outside.len() as u32 > seen.most.0 {
+            seen.most = (outside.len() as u32, frame.clock.time());
         }
-        for id in ids {
-            *seen.times.entry(id).or_default() += 1;
+        for &i in &outside {
+            *seen.times.entry(frame.agents.id[i]).or_default() += 1;
         }
+        outside
     }
 
     /// Who stood outside of the line of the queue at place `number`; `None` if nobody did.
@@ -72,13 +79,13 @@ impl Lines {
     }
 }
 
-/// The ids of the agents outside of the line of the queue at place `number`: those who have joined it beyond its room,
-/// and slow ones who have not joined it, from the line up to the first gap.
-fn ids(simulation: &Simulation, number: u16, line: &Queue) -> Vec<u32> {
+/// The agents outside of the line of the queue at place `number`: those who have joined it beyond its room, and slow ones
+/// who have not joined it, from the line up to the first gap.
+fn outside(simulation: &Simulation, number: u16, line: &Queue) -> Vec<usize> {
     let frame = simulation.frame();
     let (agents, now) = (frame.agents, frame.clock.time());
-    let mut joined: Vec<(u32, u32)> = Vec::new();
-    let mut around: Vec<(f64, u32)> = Vec::new();
+    let mut joined: Vec<(u32, usize)> = Vec::new();
+    let mut around: Vec<(f64, usize)> = Vec::new();
     for i in agents.present() {
         let trip = agents.trip.get(i).and_then(Option::as_ref);
         let Some(trip) = trip.filter(|trip| trip.place == number) else {
@@ -87,9 +94,9 @@ fn ids(simulation: &Simulation, number: u16, line: &Queue) -> Vec<u32> {
         let start = agents.walks_from.get(i).copied().unwrap_or(0.0);
         let has_started = now - start.max(trip.entered) >= STARTING;
         match trip.status {
-            Status::Queued { ticket, .. } => joined.push((ticket, agents.id[i])),
+            Status::Queued { ticket, .. } => joined.push((ticket, i)),
             Status::Walking if has_started && is_slow(simulation, i) => {
-                around.push((distance(line, agents.position[i]), agents.id[i]));
+                around.push((distance(line, agents.position[i]), i));
             }
             _ => {}
         }
@@ -97,9 +104,9 @@ fn ids(simulation: &Simulation, number: u16, line: &Queue) -> Vec<u32> {
     joined.sort_unstable();
     around.sort_by(|(a, _), (b, _)| a.total_cmp(b)); // stable
     let count = length(around.iter().map(|&(distance, _)| distance), 0.0);
-    let beyond = joined.iter().skip(line.room() as usize).map(|&(_, id)| id);
+    let beyond = joined.iter().skip(line.room() as usize).map(|&(_, i)| i);
     beyond
-        .chain(around[..count as usize].iter().map(|&(_, id)| id))
+        .chain(around[..count as usize].iter().map(|&(_, i)| i))
         .collect()
 }
 

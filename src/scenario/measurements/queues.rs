@@ -11,10 +11,13 @@ use serde::{Deserialize, Serialize};
 use super::lines::{Lines, Outside};
 use super::passages::{Crossing, Known, Openings};
 use super::stuck::{Aim, Headway};
-use crate::engine::journeys::{Kind, Place};
+use crate::analysis::service;
+use crate::analysis::statistics::Range;
+use crate::engine::journeys::{Change, ChangeKind, Journeys, Kind, Place};
 use crate::engine::math::Vector;
+use crate::engine::scene::Scene;
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::quote::to_centimeters;
+use crate::scenario::error::quote::{shown, to_centimeters};
 
 /// An agent stands in a queue if it walks slower than this part of its preferred speed.
 pub const SLOW: f64 = 0.5;
@@ -24,6 +27,8 @@ pub const GAP: f64 = 3.0;
 pub(super) const EVERY: f64 = 1.0;
 /// The fewest agents in a queue.
 const FEWEST: u32 = 2;
+/// The fewest agents whose density is that of a queue.
+const CROWD: usize = 5;
 
 /// The longest queue before a passage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,9 +42,33 @@ pub struct LongestQueue {
     pub agents: u32,
     /// The first time with this number, seconds.
     pub at_secs: f64,
+    /// The highest median of the SPH densities at its agents, over all times with five or more of them, P/m²; of a queue
+    /// with a line, at those who stood outside of it. `None` without densities.
+    #[serde(default)]
+    pub density_per_m2: Option<f64>,
+    /// Whether people are held there: it is closed for a time, passes a limited number per second, or serves people.
+    #[serde(default)]
+    pub holds: bool,
     /// Of a queue with a line: those who stood outside of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outside: Option<Outside>,
+}
+
+impl LongestQueue {
+    /// What to know of people who are held here so densely that bodies touch (Fruin's level F for queues).
+    pub fn packed(&self) -> Option<String> {
+        let touching = service::densities(&service::QUEUE)[4];
+        let density = self.density_per_m2.filter(|&density| density > touching)?;
+        self.holds.then(|| {
+            format!(
+                "people who wait before {} stand at up to {density:.1} P/m²: their bodies touch (Fruin's level F for \
+                 queues, above {touching:.1} P/m²). No profile keeps people apart who stand and wait, and calm people \
+                 stand farther apart where they have room. Take such densities as upper bounds, or give people \
+                 `waiting_areas` or the line of a `queues` entry with room for all",
+                shown(&self.before)
+            )
+        })
+    }
 }
 
 /// What people wait for.
@@ -55,6 +84,8 @@ struct Queue {
     passage: Passage,
     agents: u32,
     at_secs: f64,
+    /// The highest median density so far, P/m².
+    density: Option<f64>,
 }
 
 /// The longest queues so far.
@@ -100,7 +131,8 @@ impl Queues {
         }
         for one in &waiting {
             if !one.is_part_of_another(&waiting, &slow, &openings) {
-                self.notice(one.passage, one.queue as u32, now);
+                let density = one.density(simulation, &slow);
+                self.notice(one.passage, (one.queue as u32, now), density);
             }
         }
         self.openings = Some(openings);
@@ -108,8 +140,13 @@ impl Queues {
         let states = simulation.progress().places.iter().zip(places).zip(0..);
         for ((state, place), number) in states {
             if let Kind::Queue(line) = &place.kind {
-                self.notice(Passage::Aim(Aim::Place(number)), state.longest, now);
-                self.lines.observe(simulation, number, line);
+                let outside = self.lines.observe(simulation, number, line);
+                let density = median_density(simulation, outside);
+                self.notice(
+                    Passage::Aim(Aim::Place(number)),
+                    (state.longest, now),
+                    density,
+                );
             }
         }
     }
@@ -127,6 +164,7 @@ impl Queues {
                 Passage::Aim(Aim::Place(number)) => Some(number),
                 Passage::Aim(_) => None,
             };
+            let place_number = place;
             let outside = place.and_then(|number| self.lines.outside(number));
             let place = place.map(|number| &places[usize::from(number)]);
             let at = match (place, queue.passage) {
@@ -145,26 +183,35 @@ impl Queues {
                 at: at.into(),
                 agents: queue.agents,
                 at_secs: queue.at_secs,
+                density_per_m2: queue.density,
+                holds: place_number.is_some_and(|number| holds(simulation.scene(), number)),
                 outside,
             }
         });
         longest.collect()
     }
 
-    fn notice(&mut self, passage: Passage, agents: u32, at_secs: f64) {
+    fn notice(&mut self, passage: Passage, (agents, at_secs): (u32, f64), density: Option<f64>) {
         if agents < FEWEST {
             return;
         }
-        let queue = Queue {
-            passage,
-            agents,
-            at_secs,
-        };
         let mut queues = self.queues.iter_mut();
         match queues.find(|queue| queue.passage == passage) {
-            Some(longest) if longest.agents < agents => *longest = queue,
-            Some(_) => {}
-            None => self.queues.push(queue),
+            Some(longest) => {
+                if longest.agents < agents {
+                    (longest.agents, longest.at_secs) = (agents, at_secs);
+                }
+                // `None` is less than any density.
+                if longest.density < density {
+                    longest.density = density;
+                }
+            }
+            None => self.queues.push(Queue {
+                passage,
+                agents,
+                at_secs,
+                density,
+            }),
         }
     }
 }
@@ -272,10 +319,40 @@ impl Waiting {
         })
     }
 
+    /// The median density at those in the queue, P/m².
+    fn density(&self, simulation: &Simulation, slow: &[Slow]) -> Option<f64> {
+        let queue = self.agents[..self.queue].iter();
+        median_density(simulation, queue.map(|&(_, k)| slow[k].agent))
+    }
+
     /// How far behind the passage the last one stands, meters; `None` without a queue.
     fn reach(&self) -> Option<f64> {
         let last = self.queue.checked_sub(1)?;
         Some(self.agents[last].0)
+    }
+}
+
+/// The median of the SPH densities at agents, P/m²; `None` at fewer than [`CROWD`], or without densities.
+fn median_density(simulation: &Simulation, agents: impl IntoIterator<Item = usize>) -> Option<f64> {
+    if !simulation.needs().density {
+        return None;
+    }
+    let all = &simulation.frame().fields.density;
+    let densities = agents.into_iter().filter_map(|i| all.get(i).copied());
+    let densities: Vec<f64> = densities.collect();
+    (densities.len() >= CROWD).then(|| Range::of(&densities).median)
+}
+
+/// Whether people are held at a place: see [`LongestQueue::holds`].
+fn holds(scene: &Scene, number: u16) -> bool {
+    let Journeys {
+        places, changes, ..
+    } = &scene.journeys;
+    let closes = |change: &Change| change.place == number && change.kind == ChangeKind::Close;
+    match &places[usize::from(number)].kind {
+        Kind::Queue(_) => true,
+        Kind::Exit(exit) if exit.most_per_sec.is_some() => true,
+        _ => changes.iter().any(closes),
     }
 }
 
