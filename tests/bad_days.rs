@@ -102,7 +102,16 @@ fn every_writer_names_its_path_on_a_full_disk() {
 fn a_full_disk_leaves_pictures_and_reports_as_they_were() {
     let folder = tempfile::tempdir().unwrap();
     let draw = ["draw", "evacuation", "--at", "0.1"];
-    let moving = ["draw", "evacuation", "--until", "0.3", "--fps", "10"];
+    let moving = [
+        "draw",
+        "evacuation",
+        "--from",
+        "0",
+        "--to",
+        "0.3",
+        "--fps",
+        "10",
+    ];
     let egress = ["draw", "evacuation", "--egress"];
     let report = ["report", "evacuation", "--until", "0.2"];
     for (arguments, extension) in [

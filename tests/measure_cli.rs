@@ -287,12 +287,11 @@ fn lines_off_the_floor_are_refused_unless_someone_crosses_them() {
     );
 }
 
-#[test]
-fn recordings_far_from_the_origin_are_as_fine_as_the_file_and_say_their_own_origin() {
-    // As a survey has them: 0.35 m between two people, where single precision has steps of 0.5 m.
+/// Measures two people of a survey, 0.35 m apart, whose y begins at `north`, and checks the recording.
+fn assert_recorded_finely(north: f64, more: &[&str]) {
     let place = |id: i32, frame: i32| {
         let across = f64::from(id) * 0.35;
-        [395_131.0 + 0.05 * f64::from(frame), 5_268_347.2 + across]
+        [395_131.0 + 0.05 * f64::from(frame), north + 47.2 + across]
     };
     let rows = (0..20).flat_map(|frame| (1..=2).map(move |id| (id, frame)));
     let rows = rows.map(|(id, frame)| {
@@ -301,34 +300,51 @@ fn recordings_far_from_the_origin_are_as_fine_as_the_file_and_say_their_own_orig
     });
     let text = "# framerate: 25\n# id frame x/m y/m\n".to_owned() + &rows.collect::<String>();
     let (folder, path) = file("utm.txt", &text);
-    let plan = folder.path().join("plan.wkt");
-    let corners = "395120 5268340, 395140 5268340, 395140 5268350, 395120 5268350, 395120 5268340";
-    fs::write(&plan, format!("POLYGON (({corners}))")).unwrap();
-    let [path, plan] = [&path, &plan].map(|path| path.to_str().unwrap());
     let out = folder.path().join("m");
-    let line = ["--line", "395131.5,5268346,395131.5,5268349"];
-    let region = ["--region", "395131,5268347,395132,5268348"];
-    let places = [path, "--geometry", plan, "--out", out.to_str().unwrap()];
-    let output = measure(&[&places[..], &line, &region].concat());
+    let places = [path.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let output = measure(&[&places[..], more].concat());
     let said = program::stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
-    let note = "in the recording places are those of the file less (395100, 5268300) m";
-    assert!(said.contains(note), "{said}");
+    let origin = format!("less (395100, {north}) m");
+    assert!(
+        said.contains(&format!(
+            "in the recording places are those of the file {origin}"
+        )),
+        "{said}"
+    );
     let recording = Recording::read(&out.join("measured.rrd"));
     let crowd = recording.pairs("world/agents", "Points2D:positions");
     assert_eq!(crowd.len(), 20);
     for (frame, people) in crowd {
         for (k, [x, y]) in people.into_iter().enumerate() {
             let there = place(k as i32 + 1, frame as i32);
-            let off = (x + 395_100.0 - there[0]).hypot(y + 5_268_300.0 - there[1]);
+            let off = (x + 395_100.0 - there[0]).hypot(y + north - there[1]);
             assert!(off < 0.001, "{frame}: {x} {y} {there:?}");
         }
+    }
+    let document: rerun::components::Text =
+        recording.of_static("info/scenario", "TextDocument:text");
+    assert!(document.contains(&origin), "{document:?}");
+    if more.is_empty() {
+        return;
     }
     let recorded = Recorded::read(&out.join("measured.rrd")).unwrap();
     let walls = recorded.walls().concat();
     let corner = |x: f64, y: f64| walls.iter().any(|p| (p.x - x).hypot(p.y - y) < 0.001);
     assert!(corner(20.0, 40.0) && corner(40.0, 50.0), "{walls:?}");
-    let document: rerun::components::Text =
-        recording.of_static("info/scenario", "TextDocument:text");
-    assert!(document.contains("(395100, 5268300) m"), "{document:?}");
+}
+
+#[test]
+fn recordings_far_from_the_origin_are_as_fine_as_the_file_and_say_their_own_origin() {
+    // Single precision has steps of 0.5 m there.
+    assert_recorded_finely(5_268_300.0, &[]);
+    let (folder, plan) = file(
+        "plan.wkt",
+        "POLYGON ((395120 368340, 395140 368340, 395140 368350, 395120 368350, 395120 368340))",
+    );
+    let line = ["--line", "395131.5,368346,395131.5,368349"];
+    let region = ["--region", "395131,368347,395132,368348"];
+    let geometry = ["--geometry", plan.to_str().unwrap()];
+    assert_recorded_finely(368_300.0, &[geometry, line, region].concat());
+    drop(folder);
 }

@@ -188,7 +188,10 @@ fn letters_that_the_font_lacks_are_named() {
         ("draw room.json --out a.svg", false),
         ("report room.json --out r.pdf", true),
         ("report room.json --out r.html", false),
-        ("draw room.json --until 0.2 --fps 10 --out a.gif", true),
+        (
+            "draw room.json --from 0 --to 0.2 --fps 10 --out a.gif",
+            true,
+        ),
     ] {
         let output = run_in(folder.path(), &typed.split(' ').collect::<Vec<_>>());
         assert_eq!(output.status.code(), Some(0));

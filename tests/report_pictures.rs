@@ -30,7 +30,7 @@ fn tracks(folder: &Path) -> BTreeMap<u64, Vec<([f64; 2], f64)>> {
     for row in reader.deserialize() {
         let row: BTreeMap<String, String> = row.unwrap();
         let number = |name: &str| row[name].parse::<f64>().unwrap();
-        let agent = ([number("x"), number("y")], number("density"));
+        let agent = ([number("pos_x"), number("pos_y")], number("density"));
         frames
             .entry(row["frame"].parse().unwrap())
             .or_default()

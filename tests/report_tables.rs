@@ -18,7 +18,7 @@ fn people_and_lines_are_those_of_the_scenario_and_of_the_run() {
         "preferred_speed": 1.2,
         "walkable_area": "plan.wkt",
         "exits": [{"name": "out", "line": [[12, 1], [12, 3]], "closed_secs": [[0, 2], [40, 50]]}],
-        "doors": [{"name": "door", "line": [[6, 1.5], [6, 2.7]]}],
+        "doors": [{"name": "door", "line": [[6.1, 1.5], [6.1, 2.7]]}],
         "journeys": [{"name": "leave", "stages": ["out"]}],
         "crowds": [
             {"name": "classroom", "area": [[1, 0.5], [5, 0.5], [5, 3.5], [1, 3.5]], "number": 8, "journey": "leave",

@@ -288,7 +288,7 @@ fn update_also_writes_the_status_beside_the_document() {
     };
     // Of one profile: the document stays.
     let profiles = verify(" --profile sph");
-    let passed = serde_json::json!({"cases": 1, "passed": 1, "missed": [], "values": [0, 0]});
+    let passed = serde_json::json!({"cases": 1, "passed": 1, "missed": [], "values": [2, 2]});
     assert_eq!(profiles["sph"], passed);
     assert_eq!(profiles["rvo"]["missed"][0], "room");
     assert!(profiles.get("sf->sph").is_none());

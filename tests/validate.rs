@@ -126,7 +126,7 @@ fn scenes_with_data_are_compared_with_the_data_and_skipped_without() {
     assert!((density - 0.8 / 0.64).abs() < 0.15, "{density}");
     let texts = pictures::texts_of(&out.join("passages"));
     assert!(
-        texts.iter().any(|text| text.contains("data-bottleneck")),
+        texts.iter().any(|text| text.contains("data bottleneck")),
         "{texts:?}"
     );
     let picture = image::open(out.join("data-bottleneck.png"))

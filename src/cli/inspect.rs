@@ -16,6 +16,7 @@ use crate::engine::pairs::Precision;
 use crate::engine::simulation::Simulation;
 use crate::output::recording::check_enabled;
 use crate::runs::outputs::{Manner, Outputs};
+use crate::scenario::quote::printable;
 
 #[derive(Args)]
 pub struct InspectOptions {
@@ -76,7 +77,7 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
         })?;
         say(match as_json {
             true => format!("{}{}", if k > 0 { "," } else { "" }, json!(breakdown)),
-            false => format!("\n{breakdown}"),
+            false => printable(&format!("\n{breakdown}")),
         })?;
     }
     match as_json {
