@@ -1,4 +1,6 @@
 //! Walls in SPH (§4.3): contributions of the hidden regions P_k to density and pressure.
+//!
+//! Plain form of the paper's method: `density_by_wall` and `pressure_by_wall` in `examples/paper.rs`.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,7 @@
 //! Step 1B: density, personal rest density and pressure (§4.2, §4.3).
+//!
+//! Plain form: `update_density_and_pressure`, `density_by_agent`, `mean_density` and `pressure` in
+//! `examples/paper.rs`.
 
 use std::f64::consts::PI;
 use std::ops::Range;

@@ -1,6 +1,8 @@
 //! Smoothing kernels (§5.2): the 2D versions of Müller's, for support radius h in meters.
 //!
 //! Each is zero at and beyond distance h.
+//!
+//! Plain form: `kernel`, `gradient` and `laplacian` in `examples/paper.rs`.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,6 @@
 //! Profiles (§5.5) and their blending by density (§4.4).
+//!
+//! Plain form: `terms` and `profile` in `examples/paper.rs`.
 
 mod blend;
 mod terms;

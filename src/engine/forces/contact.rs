@@ -3,6 +3,8 @@
 //! In the paper the whole radius D_i counts. People turn their shoulders in narrow places, so only a fraction of D_i
 //! may count in contacts with agents, and another fraction in contacts with walls. Masses and personal space (RVO,
 //! entrances) use the whole D_i.
+//!
+//! Plain form: `contact_by_agent` and `contact_by_wall` in `examples/paper.rs`.
 
 use std::ops::Range;
 

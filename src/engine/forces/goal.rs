@@ -1,4 +1,6 @@
 //! The goal force (§5.3.1, Eq. 17) and the preferred velocity.
+//!
+//! Plain form: `goal_force` and `preferred_velocity` in `examples/paper.rs`.
 
 use std::ops::Range;
 

@@ -1,4 +1,6 @@
 //! Reciprocal velocity obstacles (§5.3.2, Eqs. 20 and 21).
+//!
+//! Plain form: `rvo_acceleration`, `cost` and `time_to_collision` in `examples/paper.rs`.
 
 mod candidates;
 mod discs;

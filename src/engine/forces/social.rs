@@ -1,4 +1,7 @@
 //! Social force: avoidance of agents and walls (§5.3.1, Eqs. 18 and 19).
+//!
+//! Plain form: `social_force_by_agent`, `social_force_by_wall`, `weight_in_view` and `repelling_points` in
+//! `examples/paper.rs`.
 
 mod around;
 mod counting;

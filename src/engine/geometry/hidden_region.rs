@@ -1,4 +1,6 @@
 //! The region of an agent's kernel behind one wall (P_k, §4.3), in closed form.
+//!
+//! Plain form: `hidden_region` in `examples/paper.rs`.
 
 use super::Wall;
 use crate::engine::math::{Vector, perpendicular};

@@ -1,4 +1,6 @@
 //! Blending of profiles by density (§4.4).
+//!
+//! Plain form: `acting` and `acceleration` in `examples/paper.rs`.
 
 use std::ops::Range;
 

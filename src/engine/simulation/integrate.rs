@@ -1,4 +1,6 @@
 //! Step 5: moves agents, stops them at walls, and removes those that reach their goal.
+//!
+//! Plain form: `integrate` in `examples/paper.rs`.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,6 @@
 //! Candidate velocities: drawn, compared with the preferred velocity, and sorted by their deviation from it.
+//!
+//! Plain form: `candidates` in `examples/paper.rs`.
 
 use rand::RngCore;
 

@@ -1,4 +1,6 @@
 //! Branch and bound for the cheapest candidate; gives the same result as an exhaustive search.
+//!
+//! Plain form, the exhaustive search: `rvo_acceleration` in `examples/paper.rs`.
 
 use super::candidates::{Candidates, Sorted};
 use super::rings::{Appear, Rings};

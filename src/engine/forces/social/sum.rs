@@ -1,4 +1,6 @@
 //! Eq. 18, summed over pairs of agents, eight pairs at a time.
+//!
+//! Plain form: `social_force_by_agent` in `examples/paper.rs`.
 
 use std::f64::consts::{LN_2, SQRT_2};
 
