@@ -57,6 +57,7 @@ mod off_floor;
 mod oscillation;
 mod overlaps;
 mod overview;
+mod paper;
 mod passages;
 mod periodic;
 mod periodic_scenarios;

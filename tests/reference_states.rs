@@ -1,5 +1,5 @@
-//! Thirty small states with every term of the model except RVO, computed by an independent double-precision
-//! implementation. The engine must agree to 1e-9.
+//! Small states with every term of the model. Those with representative points are from `examples/paper.rs`, those with
+//! exact integrals over hidden regions from another independent implementation. The engine must agree to 1e-9.
 
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::boundary::WallMethod;
@@ -50,10 +50,17 @@ struct Expected {
     rest_density: f64,
     pressure: f64,
     acceleration: [f64; 2],
-    /// Given only for plain profiles; terms that are switched off (μ = 0) are zero.
-    accelerations: Option<BTreeMap<String, [f64; 2]>>,
+    profiles: Vec<ExpectedProfile>,
     /// Given only for representative points, in the order of the walls.
     walls: Option<Vec<ExpectedWall>>,
+}
+
+#[derive(Deserialize)]
+struct ExpectedProfile {
+    name: String,
+    weight: f64,
+    /// Terms that are switched off (μ = 0) are zero.
+    accelerations: BTreeMap<String, [f64; 2]>,
 }
 
 #[derive(Deserialize)]
@@ -128,11 +135,14 @@ fn check_agent(ours: &Breakdown, theirs: &Expected, at: &str) {
     for (ours, theirs, name) in parts {
         assert_close(ours, theirs, &format!("{at}: {name}"));
     }
-    if let Some(expected) = &theirs.accelerations {
-        assert_eq!(ours.profiles.len(), 1, "{at}: one profile");
-        for (term, value) in ours.profiles[0].accelerations.listed() {
+    assert_eq!(ours.profiles.len(), theirs.profiles.len(), "{at}");
+    for (ours, theirs) in ours.profiles.iter().zip(&theirs.profiles) {
+        assert_eq!(ours.name, theirs.name, "{at}");
+        assert_close(ours.weight, theirs.weight, &format!("{at}: weight"));
+        for (term, value) in ours.accelerations.listed() {
             let name = term.name();
-            let expected = expected.get(name).copied().unwrap_or_default();
+            let expected = theirs.accelerations.get(name);
+            let expected = expected.copied().unwrap_or_default();
             let ours = value.unwrap_or_default();
             assert_close_vector(ours.into(), expected, &format!("{at}: {name}"));
         }
@@ -158,11 +168,9 @@ fn check_agent(ours: &Breakdown, theirs: &Expected, at: &str) {
     }
 }
 
-#[test]
-fn every_term_agrees_with_the_independent_implementation() {
-    let file = include_str!("data/reference_states.json");
+fn check_file(file: &str, states: usize) {
     let references: References = serde_json::from_str(file).unwrap();
-    assert_eq!(references.states.len(), 30);
+    assert_eq!(references.states.len(), states);
     for state in &references.states {
         let simulation = evaluated(state);
         let agents = simulation.frame().agents;
@@ -178,4 +186,14 @@ fn every_term_agrees_with_the_independent_implementation() {
             assert_close_vector(ours.weighted_sum().into(), ours.acceleration, &at);
         }
     }
+}
+
+#[test]
+fn every_term_agrees_with_the_plain_model() {
+    check_file(include_str!("data/reference_states.json"), 35);
+}
+
+#[test]
+fn terms_with_exact_walls_agree_with_the_independent_implementation() {
+    check_file(include_str!("data/reference_exact_walls.json"), 10);
 }

@@ -4,6 +4,7 @@
 pub mod bounded;
 pub mod busy;
 pub mod documents;
+pub mod drawn;
 pub mod errands;
 pub mod exits;
 pub mod floors;
