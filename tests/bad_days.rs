@@ -158,8 +158,15 @@ fn a_full_disk_leaves_pictures_and_reports_as_they_were() {
         fs::remove_file(&path).unwrap();
     }
     // Devices are written in place.
-    let said = program::run(&[&draw[..], &["--force", "--out", "/dev/full"]].concat());
-    assert!(stderr(&said).contains("cannot write /dev/full: No space left on device"));
+    let device = folder.path().join("device.svg");
+    symlink("/dev/full", &device).unwrap();
+    let said = program::run(&[&draw[..], &["--force", "--out", text(&device)]].concat());
+    let said = stderr(&said);
+    assert!(
+        said.contains("device.svg: No space left on device"),
+        "{said}"
+    );
+    assert!(fs::symlink_metadata(&device).unwrap().is_symlink());
 }
 
 #[test]
