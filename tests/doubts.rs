@@ -26,9 +26,8 @@ fn notes(document: &Value) -> Vec<String> {
 
 /// The only note of a document.
 fn note(document: &Value) -> String {
-    let notes = notes(document);
-    assert_eq!(notes.len(), 1, "{notes:?}");
-    notes[0].clone()
+    let [note] = notes(document).try_into().unwrap();
+    note
 }
 
 #[test]
@@ -93,10 +92,7 @@ fn a_plan_in_centimeters_is_noted() {
     room["duration_secs"] = json!(2000);
     let text = note(&room);
     assert!(text.starts_with("walkable_area: 2"), "{text}");
-    assert!(
-        text.ends_with("for 20 agent(s): check that the unit is meters"),
-        "{text}"
-    );
+    assert!(text.ends_with("check that the unit is meters"), "{text}");
 }
 
 #[test]
@@ -391,16 +387,12 @@ fn places_and_journeys_without_agents_are_noted() {
     let mut room = room();
     room["waypoints"] = json!([{"name": "a", "at": [4, 5]}, {"name": "b", "at": [6, 5]}]);
     room["journeys"] = json!([{"name": "long", "stages": ["a", "b", "east"]}, {"name": "short", "stages": ["east"]}]);
-    room["crowds"][0]["journey"] = json!("short");
-    let found = note(&room);
-    assert!(
-        found.starts_with("no agents use the journey `long` and 2 more"),
-        "{found}"
-    );
-    room["crowds"][0]["journey"] = json!("long");
-    let found = note(&room);
-    assert!(
-        found.starts_with("no agents use the journey `short`;"),
-        "{found}"
-    );
+    for (used, said) in [
+        ("short", "no agents use the journey `long` and 2 more"),
+        ("long", "no agents use the journey `short`;"),
+    ] {
+        room["crowds"][0]["journey"] = json!(used);
+        let found = note(&room);
+        assert!(found.starts_with(said), "{found}");
+    }
 }

@@ -104,7 +104,7 @@ fn agents_before_a_closed_exit_are_stuck_because_it_is_closed() {
     let group = only(&run);
     assert_eq!(
         (group.agents, group.cause.as_str()),
-        (4, "the exit `east` is closed")
+        (4, "the exit `east` is closed until 50 s")
     );
     // It opens at 50 s.
     assert_eq!(stuck(&ended(&document)), []);

@@ -17,6 +17,7 @@ mod convergence;
 mod crowds;
 mod determinism;
 mod distributions;
+mod door_ways;
 mod doors;
 mod doubts;
 mod enclosures;

@@ -204,9 +204,9 @@ fn a_run_says_which_motivation_it_used() {
         let said = String::from_utf8(run(&typed).stdout).unwrap();
         said.lines().next().unwrap().to_owned()
     };
-    let calm = first(&["--profile", "steer+sph"]);
+    let calm = first(&["--profile", "steer+sph", "--set", "motivation=0"]);
     assert!(calm.contains("(steer+sph, motivation 0), seed 1"), "{calm}");
-    let hurried = first(&["--profile", "steer+sph", "--set", "motivation=1"]);
+    let hurried = first(&["--profile", "steer+sph"]); // as the file says
     assert!(hurried.contains("(steer+sph, motivation 1)"), "{hurried}");
     assert!(first(&[]).contains("(sph), seed 1"), "no law reads it");
 }

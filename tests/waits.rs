@@ -99,7 +99,8 @@ fn check(document: &Value) -> Vec<(String, u32)> {
         .collect()
 }
 
-/// A room of 10 m × 10 m with `people`, a wall of 0.2 m with a gap of `width`, and an exit in the last wall of a room of
+/// A room of 10 m × 10 m with `people`, a wall of 0.2 m with a gap of `width`, and an exit in the last wall of a room
+/// of
 /// `depth` meters behind it.
 fn two_rooms(people: u32, width: f64, depth: f64) -> Value {
     let [low, high] = [5.0 - 0.5 * width, 5.0 + 0.5 * width];

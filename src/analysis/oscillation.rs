@@ -178,8 +178,8 @@ impl Oscillation {
     }
 }
 
-/// The root mean square over all times and boxes of the velocities minus their means over time, m/s; `None` if all boxes
-/// were empty at some time.
+/// The root mean square over all times and boxes of the velocities minus their means over time, m/s; `None` if all
+/// boxes were empty at some time.
 pub fn speed(boxes: &[Option<Vec<[f64; 2]>>]) -> Option<f64> {
     let still = boxes.iter().flatten().map(|series| without_mean(series));
     let velocities: Vec<[f64; 2]> = still.flatten().collect();

@@ -54,8 +54,8 @@ impl Simulation {
     }
 }
 
-/// The time of the first changes of places after `now`, all those of one instant together, after the last of which `is_it`
-/// holds, seconds.
+/// The time of the first changes of places after `now`, all those of one instant together, after the last of which
+/// `is_it` holds, seconds.
 fn later(scene: &Scene, now: f64, mut is_it: impl FnMut(u16, ChangeKind) -> bool) -> Option<f64> {
     let together = scene.journeys.changes.chunk_by(|a, b| a.at == b.at);
     let mut later = together.filter(|changes| changes[0].at > now);

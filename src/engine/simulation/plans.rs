@@ -2,9 +2,10 @@
 //! again now and then.
 //!
 //! An agent expects to pass an opening when it has walked there, or when all agents that are bound for it and nearer
-//! have walked there and passed at its flow, whichever is later. Beyond it, the least time to the goal is that of Dijkstra's algorithm
-//! over openings, which runs once per second for each goal. Agents follow the path map of their goal as long as its
-//! way leads through the opening that they have chosen; with a crowd before the opening they walk straight to it.
+//! have walked there and passed at its flow, whichever is later. Beyond it, the least time to the goal is that of
+//! Dijkstra's algorithm over openings, which runs once per second for each goal. Agents follow the path map of their
+//! goal as long as its way leads through the opening that they have chosen; with a crowd before the opening they walk
+//! straight to it.
 
 use rand::Rng;
 use rayon::prelude::*;

@@ -40,8 +40,8 @@ impl Narrowings {
     }
 
     /// These, such as doors, and after them the openings of a floor up to `widest` meters wide, the narrowest first: of
-    /// the passages that end at one corner only the narrowest, and of two whose middles are nearer than the width of the
-    /// narrower one, such as the two sides of a wall with a door, only the first.
+    /// the passages that end at one corner only the narrowest, and of two whose middles are nearer than the width of
+    /// the narrower one, such as the two sides of a wall with a door, only the first.
     #[must_use]
     pub fn and_openings(self, mesh: &Mesh, widest: f64) -> Self {
         let width = |[a, b]: &[Vector; 2]| (b - a).norm();

@@ -26,7 +26,10 @@ pub fn of_type(said: &str, given: &str) -> String {
         what.iter()
             .any(|what| said.contains(&format!("expected {what}")))
     };
+    // A number or the one word for a distribution.
+    let is_drawn = said.starts_with("unknown variant") && expects(&["`weidmann_age`"]);
     match said.starts_with("invalid type: string") {
+        _ if is_drawn => of_text(given),
         true if expects(&["f64", "u32", "u64", "a number", "a whole number"]) => of_text(given),
         true if expects(&["a boolean"]) && ["true", "false"].contains(&given) => {
             format!("; write it without quotes: {given}")

@@ -112,12 +112,15 @@ fn in_file(
         path: path.to_owned(),
         error: Box::new(error),
     };
-    if let Some(what) = kinds::of_name(path).filter(|_| path.is_file()) {
-        return Err(within(FloorPlanError::Unreadable(what.to_owned())));
-    }
-    let text =
-        input::text(path).map_err(|error| within(FloorPlanError::Unreadable(error.to_string())))?;
-    parse(&text).map_err(within)
+    // What a name promises explains a failure; a plan may have any name.
+    let promised = kinds::of_name(path).filter(|_| path.is_file());
+    let explained = |error: FloorPlanError| {
+        let what = promised.map(|what| FloorPlanError::Unreadable(what.to_owned()));
+        within(what.unwrap_or(error))
+    };
+    let unreadable = |error: std::io::Error| FloorPlanError::Unreadable(error.to_string());
+    let text = input::text(path).map_err(|error| explained(unreadable(error)))?;
+    parse(&text).map_err(explained)
 }
 
 /// The polygons of GeoJSON, XML or WKT. If `all_obstacles`, the kinds of features do not matter.

@@ -1,8 +1,8 @@
 //! People who wait for a passage.
 //!
-//! A passage is an exit, a waypoint or waiting area that people walk to, a declared door, or an opening of the floor. In
-//! the queue before it are the people whose ways lead through it and who are slow, in the order of their distances along
-//! their ways, from the passage up to the first gap.
+//! A passage is an exit, a waypoint or waiting area that people walk to, a declared door, or an opening of the floor.
+//! In the queue before it are the people whose ways lead through it and who are slow, in the order of their distances
+//! along their ways, from the passage up to the first gap.
 
 use std::collections::BTreeMap;
 
@@ -42,8 +42,8 @@ pub struct LongestQueue {
     pub agents: u32,
     /// The first time with this number, seconds.
     pub at_secs: f64,
-    /// The highest median of the SPH densities at its agents, over all times with five or more of them, P/m²; of a queue
-    /// with a line, at those who stood outside of it. `None` without densities.
+    /// The highest median of the SPH densities at its agents, over all times with five or more of them, P/m²; of a
+    /// queue with a line, at those who stood outside of it. `None` without densities.
     #[serde(default)]
     pub density_per_m2: Option<f64>,
     /// Whether people are held there: it is closed for a time, passes a limited number per second, or serves people.
@@ -295,8 +295,8 @@ impl Waiting {
         self.queue = length(distances, start) as usize;
     }
 
-    /// Whether it is an opening whose queue stands before another passage, too: a place, a door or a narrower opening. Then
-    /// people wait for that one. Declared doors have queues of their own.
+    /// Whether it is an opening whose queue stands before another passage, too: a place, a door or a narrower opening.
+    /// Then people wait for that one. Declared doors have queues of their own.
     fn is_part_of_another(&self, all: &[Self], slow: &[Slow], openings: &Openings) -> bool {
         let Passage::Opening(opening) = self.passage else {
             return false;
