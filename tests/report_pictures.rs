@@ -153,7 +153,7 @@ fn the_map_has_the_highest_density_of_each_cell() {
         for i in frame
             .agents
             .present()
-            .filter(|_| frame.clock.frame() % 5 == 0)
+            .filter(|_| frame.clock.frame().is_multiple_of(5))
         {
             let at = (frame.agents.position[i] - low) * 2.0;
             let cell = most.entry([at.x as u32, at.y as u32]).or_default();

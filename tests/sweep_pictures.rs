@@ -228,9 +228,6 @@ fn pictures_are_written_beside_the_tables_and_without_numbers_the_axis_has_names
     let texts = pictures::texts(&texts);
     for name in ["sph", "sf->sph", "profile"] {
         let name = name.replace('>', "&gt;");
-        assert!(
-            texts.iter().any(|text| *text == name),
-            "no {name} in {texts:?}"
-        );
+        assert!(texts.contains(&name), "no {name} in {texts:?}");
     }
 }

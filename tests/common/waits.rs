@@ -133,7 +133,7 @@ impl Plan {
             let ends: Vec<Point> = others.chain(feet.map(|(foot, _)| foot)).collect();
             for b in ends {
                 let width = far(a, b);
-                if width < TINY || width > WIDEST - 1e-6 || !self.has(middle([a, b])) {
+                if !(TINY..=WIDEST - 1e-6).contains(&width) || !self.has(middle([a, b])) {
                     continue;
                 }
                 let is_free = walls.iter().all(|&wall| {
