@@ -1,5 +1,5 @@
-//! Doors on ways: people pass open doors, wait before closed ones or walk around them; lines of doors that are accepted,
-//! and the errors of those that are not.
+//! Doors on ways: people pass open doors, and wait before closed ones or walk around them. Which lines of doors are
+//! accepted, and the errors of the others.
 
 use sandbox::engine::breakdown::Breakdown;
 use serde_json::{Value, json};
