@@ -8,6 +8,7 @@ use sandbox::lab::suite::Status;
 use serde_json::json;
 
 use crate::common::pdf;
+use crate::common::program::{run_in, stderr};
 use crate::common::room::{done, scenario};
 
 #[test]
@@ -78,6 +79,81 @@ fn people_and_lines_are_those_of_the_scenario_and_of_the_run() {
     let files = rows(&html, "Scenario");
     assert_eq!(files[0], ["rooms.json", "scenario", &digest("rooms.json")]);
     assert_eq!(files[1], ["plan.wkt", "walkable_area", &digest("plan.wkt")]);
+}
+
+#[test]
+fn a_report_has_the_notes_of_the_run_and_the_limits_that_the_scenario_gives() {
+    let folder = tempfile::tempdir().unwrap();
+    let gates = json!({
+        "name": "gates", "duration_secs": 40, "profile": "steer+sph", "time_step_secs": 0.1,
+        "walkable_area": [[[[0, 0], [14, 0], [14, 8], [0, 8]]]],
+        "exits": [
+            {"name": "gate", "line": [[14, 1], [14, 2]], "most_per_sec": 0.3},
+            {"name": "free", "line": [[14, 6], [14, 7]]}
+        ],
+        "queues": [{"name": "till", "path": [[10, 4], [8, 4]], "service_secs": {"uniform": [1, 2]}, "servers": 2}],
+        "waiting_areas": [{"name": "hall", "area": [[6, 1], [8, 1], [8, 3], [6, 3]], "for_secs": 5}],
+        "journeys": [{"name": "buy", "stages": ["till", "gate"]}, {"name": "wait", "stages": ["hall", "free"]}],
+        "crowds": [
+            {"name": "buyers", "area": [[1, 4], [4, 4], [4, 7], [1, 7]], "number": 9, "journey": "buy"},
+            {"name": "wheelchairs", "area": [[1, 1], [4, 1], [4, 3], [1, 3]], "number": 2, "journey": "wait",
+             "radius": 0.35, "mass": 2.5}
+        ],
+        "entrances": [
+            {"name": "door", "line": [[0, 1], [0, 1.6]], "at_secs": [2, 2, 2, 2, 2, 2], "journey": "wait"}
+        ]
+    });
+    fs::write(folder.path().join("gates.json"), gates.to_string()).unwrap();
+    let run = run_in(folder.path(), &["run", "gates.json"]);
+    let said = stderr(&run);
+    let notes = said.lines().filter_map(|line| {
+        let note = line
+            .strip_prefix("note: ")
+            .or_else(|| line.strip_prefix("warning: "))?;
+        Some(note.to_owned())
+    });
+    let notes: Vec<String> = notes.collect();
+    // The step, the limit of the speed, and agents that wait for room to enter.
+    assert!(notes.len() >= 3, "{said}");
+    for file in ["gates.html", "gates.pdf"] {
+        done(
+            folder.path(),
+            &["report", "gates.json", "-o", file, "--json"],
+        );
+    }
+    let html = fs::read_to_string(folder.path().join("gates.html")).unwrap();
+    let (_, list) = html.split_once("<h2>Notes of the program</h2>").unwrap();
+    let (list, _) = list.split_once("</ul>").unwrap();
+    let listed = list.split("<li>").skip(1).map(|item| {
+        let (text, _) = item.split_once("</li>").unwrap();
+        text.replace("&quot;", "\"")
+            .replace("&gt;", ">")
+            .replace("&lt;", "<")
+            .replace("&amp;", "&")
+    });
+    assert_eq!(listed.collect::<Vec<_>>(), notes);
+    let words = |text: &str| text.split_whitespace().collect::<String>();
+    let pdf = fs::read(folder.path().join("gates.pdf")).unwrap();
+    let pages: String = pdf::pages(&pdf)
+        .iter()
+        .map(|page| words(&page.text))
+        .collect();
+    for note in &notes {
+        assert!(pages.contains(&words(note)), "{note}");
+    }
+    let lines = rows(&html, "Exits, doors and gates");
+    assert_eq!([&lines[0][4], &lines[1][4]], ["0.3", "–"]);
+    let waits = rows(&html, "Waiting areas and queues");
+    let stay = |name: &str| waits.iter().find(|row| row[0] == name).unwrap()[2].clone();
+    assert_eq!(stay("hall"), "for 5 s");
+    let till = stay("till");
+    assert!(
+        till.starts_with("served by 2 at a time, uniform (1, 2) s each; room for "),
+        "{till}"
+    );
+    let people = rows(&html, "People");
+    assert_eq!(people[0][6..8], ["–", "–"]);
+    assert_eq!(people[1][6..8], ["0.35", "2.5"]);
 }
 
 /// The cells of the first table below a heading.

@@ -304,7 +304,8 @@ fn people_outside_of_the_line_of_a_queue_are_counted_with_their_times() {
                 .collect();
             let mut before = 0.0;
             for (distance, id) in around {
-                if distance - before > 3.0 {
+                // While there is room on the line, no agent stands outside of it.
+                if distance - before > 3.0 || joined.len() < places_on_line {
                     break;
                 }
                 before = distance;

@@ -11,16 +11,13 @@ use super::output::{check, recordings, trajectories};
 use super::terminal::{talk, tell};
 use super::watch::Progress;
 use super::{memory, notes, results};
-use crate::analysis::stability::{FITTED, Scheme, three_digits};
-use crate::engine::clock::SHORTEST_TIME_STEP;
-use crate::engine::forces::rates::Rates;
-use crate::engine::scene::Scene;
 use crate::lab::machine::main_memory;
 use crate::runs::case::Source;
 use crate::runs::checkpoint::Checkpoint;
 use crate::runs::drive::{End, Observer, Run};
+use crate::runs::notes::of_step;
 use crate::runs::outputs::Outputs;
-use crate::scenario::{Scenario, Setting, automatic_step, doubtful_radius, in_units};
+use crate::scenario::{Scenario, Setting, in_units};
 
 /// `sandbox evacuation|crossing|concert|plaza|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
@@ -30,7 +27,9 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     let mut outputs = Outputs::new(options.scene.program.force);
     let whole = scenario(source, &options.scene, until, writing, &mut outputs)?;
     check(outputs, &options.output, &whole)?;
-    warn_of_the_step(&whole.scene);
+    if let Some(warning) = of_step(&whole.scene) {
+        talk(&format!("warning: {warning}"));
+    }
     let run = Run::new(whole)?;
     // A resumed run goes to the scenario's own end, if the whole scenario is valid.
     let is_cut = until.is_some() && options.output.checkpoint.checkpoint.is_some();
@@ -139,34 +138,5 @@ fn go_on(
             Err(Failure::Interrupted { time, exit_code })
         }
         _ => Ok(()),
-    }
-}
-
-/// Warns if the time step is longer than the stability limit of a crowd at rest, if that is known for the integrator.
-fn warn_of_the_step(scene: &Scene) {
-    let Some(scheme) = Scheme::of(scene.integrator) else {
-        return;
-    };
-    let step = scene.clock.time_step();
-    let largest = Rates::of(scene).largest_step(scheme, &FITTED);
-    if step > largest {
-        let automatic = automatic_step(scene).filter(|&step| step >= SHORTEST_TIME_STEP);
-        let advice = match automatic {
-            Some(automatic) => format!("--time-step auto uses {}", three_digits(automatic)),
-            None => "no allowed step is short enough: lower the stiffness or raise the masses"
-                .to_owned(),
-        };
-        let advice = match doubtful_radius(scene) {
-            Some(radius) => format!(
-                "such agents, with a radius of {} m, are lighter than people: check `radius`",
-                three_digits(radius)
-            ),
-            None => advice,
-        };
-        talk(&format!(
-            "warning: time_step_secs {step} is {} times {}, the largest step at which a crowd comes to rest; {advice}",
-            three_digits(step / largest),
-            three_digits(largest),
-        ));
     }
 }

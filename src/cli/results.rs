@@ -135,18 +135,29 @@ fn overview(run: &Run, summary: &Summary) -> String {
     let highest = summary.highest_density.map(|highest| {
         let ([x, y], secs) = (highest.at, highest.at_secs);
         let density = highest.density_per_m2;
-        format!("{density:.2} P/m² at ({x:.2}, {y:.2}) after {secs:.2} s (SPH density)")
+        let large = highest.of_large().map(|large| format!(", {large}"));
+        let large = large.unwrap_or_default();
+        format!("{density:.2} P/m² at ({x:.2}, {y:.2}) after {secs:.2} s (SPH density{large})")
     });
-    let highest = highest.unwrap_or_else(|| "not computed by this profile".to_owned());
+    let none = match *agents {
+        0 => "none: no agents entered",
+        _ => "not computed by this profile",
+    };
+    let highest = highest.unwrap_or_else(|| none.to_owned());
     line("highest density", highest);
     let queues = summary.longest_queues.iter();
     let queues = queues.map(|queue| {
         let (before, agents, secs) = (shown(&queue.before), queue.agents, queue.at_secs);
         let outside = queue.outside.map_or(String::new(), |outside| {
             let Outside {
-                agents, mean_secs, ..
+                agents,
+                at_secs,
+                mean_secs,
+                ..
             } = outside;
-            format!(" ({agents} more stood outside of its line, {mean_secs:.0} s each on average)")
+            format!(
+                " (up to {agents} outside of its line, at {at_secs:.0} s; {mean_secs:.0} s each on average)"
+            )
         });
         let density = queue.density_per_m2.map_or(String::new(), |density| {
             format!(", at up to {density:.1} P/m²")

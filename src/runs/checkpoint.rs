@@ -22,7 +22,7 @@ use crate::scenario::{Draft, Scenario, ScenarioError, Setting};
 /// The first bytes of every file.
 const MAGIC: &[u8] = b"sandbox checkpoint\n";
 /// Format version: increase it with every change to the contents of a file.
-const VERSION: u32 = 15;
+const VERSION: u32 = 16;
 /// Longest file that is read, bytes. Ten million agents, the most allowed, take 1 GB (99 bytes each, in the plaza),
 /// and the text of their scenario takes at most 256 MiB.
 const LONGEST: u64 = 1 << 32;

@@ -7,6 +7,8 @@ pub mod drive;
 
 pub mod identity;
 
+pub mod notes;
+
 pub mod outputs;
 
 pub mod checkpoint;

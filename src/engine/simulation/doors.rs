@@ -54,6 +54,9 @@ impl Crowd {
         );
         let way = *position - from;
         let length = way.norm();
+        if length == 0.0 {
+            return;
+        }
         let across = across(crossing.line, way);
         let kept = (crossing.part * length - STOP_BEFORE).max(0.0);
         let stop = from + direction(way) * kept;

@@ -22,6 +22,8 @@ pub const WALKS_ON: f64 = 6.0;
 pub const BEFORE_WALLS: f64 = 1.0;
 /// The goal of the body is this far behind the end of its way, meters.
 const GOAL_BEHIND: f64 = 5.0;
+/// Agents this near to a line stand on it, meters: far more than rounding, far less than where closed exits stop agents.
+const ON_LINE: f64 = 1e-6;
 /// A body that has not reached the end of its way is removed after this time, seconds.
 const OUTSIDE_SECS: f64 = 30.0;
 
@@ -128,10 +130,16 @@ impl Crowd {
                 let stage = journey.stage(trip.stage);
                 stage.passed(trip.place, &scene.journeys.places)
             });
-            let crossings = own.chain(closed.iter().copied()).filter_map(|place| {
+            let closed = closed.iter().copied();
+            let all = own.map(|place| (place, false));
+            let all = all.chain(closed.map(|place| (place, true)));
+            let crossings = all.filter_map(|(place, is_closed)| {
                 let place = usize::from(place);
                 let line = scene.journeys.places[place].line()?;
-                let part = crossed([before[agent], to], line)?;
+                let part = match is_closed && is_on(before[agent], line) {
+                    true => leaves([to, agents.goal[agent]], line).then_some(0.0)?,
+                    false => crossed([before[agent], to], line)?,
+                };
                 if self.lets_pass(scene, place, side(line[0], line[1], before[agent])) {
                     return None;
                 }
@@ -151,37 +159,43 @@ impl Crowd {
         found
     }
 
-    /// Agents that meet an agent from the other side on the line of their exit, so that neither can cross it: both
-    /// bodies touch the line and each other. The agents of `passing` cross a line in this frame and are already behind
-    /// it, so agents that follow them do not count as meeting them.
+    /// Agents that cannot cross the line of their place: those that stand on it, and those that meet an agent from the
+    /// other side on the line of their exit, where both bodies touch the line and each other. The agents of `passing`
+    /// cross a line in this frame and are already behind it, so agents that follow them do not count as meeting them.
     fn meetings(&self, scene: &Scene, passing: &[Crossing]) -> Vec<Crossing> {
         let agents = &self.agents;
         let touching = |agent: usize| {
             let trip = agents.trip.get(agent)?.as_ref()?;
-            let place = usize::from(trip.place);
-            let Kind::Exit(exit) = &scene.journeys.places[place].kind else {
-                return None;
-            };
-            let ([a, b], p) = (exit.line, agents.position[agent]);
+            let number = usize::from(trip.place);
+            let place = &scene.journeys.places[number];
+            let is_open = self.progress.places[number].open;
+            let ([a, b], p) = (place.line()?, agents.position[agent]);
+            let walks_from = agents.walks_from.get(agent).copied().unwrap_or(0.0);
+            let stands = is_open && walks_from <= self.clock.time() && is_on(p, [a, b]);
             let touches = (nearest_on(p, a, b) - p).norm() < agents.radius[agent];
-            (touches && trip.status == Status::Walking).then(|| (place, side(a, b, p) > 0.0, agent))
+            let meets = stands || (touches && place.is_exit());
+            let is_left = (!stands).then(|| side(a, b, p) > 0.0);
+            (meets && trip.status == Status::Walking).then_some((number, is_left, agent))
         };
         let all = (0..agents.len()).into_par_iter();
         let is_new = |&agent: &usize| passing.iter().all(|crossing| crossing.agent != agent);
-        let all: Vec<(usize, bool, usize)> = all
+        let all: Vec<(usize, Option<bool>, usize)> = all
             .with_min_len(TASK * BLOCK)
             .filter(is_new)
             .filter_map(touching)
             .collect();
-        let meets = |&(place, is_left, agent): &(usize, bool, usize)| {
+        // `None`: it stands on the line.
+        let meets = |&(place, is_left, agent): &(usize, Option<bool>, usize)| {
             let (p, radius) = (agents.position[agent], agents.radius[agent]);
-            all.iter().any(|&(other_place, is_other_left, other)| {
-                let gap = (agents.position[other] - p).norm() - radius - agents.radius[other];
-                other_place == place && is_other_left != is_left && gap < 0.0
-            })
+            let mut others = all.iter();
+            is_left.is_none()
+                || others.any(|&(other_place, is_other_left, other)| {
+                    let gap = (agents.position[other] - p).norm() - radius - agents.radius[other];
+                    other_place == place && is_other_left != is_left && gap < 0.0
+                })
         };
         let found = all.iter().filter(|one| meets(one));
-        let crossing = |&(place, _, agent): &(usize, bool, usize)| Crossing {
+        let crossing = |&(place, _, agent): &(usize, Option<bool>, usize)| Crossing {
             agent,
             place,
             line: scene.journeys.places[place].line().unwrap_or_default(),
@@ -351,6 +365,16 @@ fn room_ahead(scene: &Scene, p: Vector, way: Vector) -> f64 {
     let near = scene.walls.near_any(&[p, end], 0.0);
     let part = scene.walls.first_crossing(p, end, &near);
     part.map_or(WALKS_ON, |(part, _)| part * length - BEFORE_WALLS)
+}
+
+/// Whether an agent at `p` stands on a line.
+fn is_on(p: Vector, [a, b]: [Vector; 2]) -> bool {
+    (nearest_on(p, a, b) - p).norm() < ON_LINE
+}
+
+/// Whether an agent that stood on a closed line, as after entering there, has moved away from its goal.
+fn leaves([to, goal]: [Vector; 2], [a, b]: [Vector; 2]) -> bool {
+    is_on(goal, [a, b]) || (side(a, b, to) > 0.0) != (side(a, b, goal) > 0.0)
 }
 
 /// The fraction of a move after which it crosses a line; `None` if it does not.

@@ -23,7 +23,7 @@ pub struct PlaceState {
     /// The agents bound for it, and those that have passed it.
     pub stream: Stream,
     /// When the next agent may pass, seconds.
-    pub(super) ready: f64,
+    pub ready: f64,
     /// The number of tickets given out for its queue.
     pub(super) tickets: u32,
     /// The largest number of agents that have stood in its queue at once.

@@ -63,7 +63,8 @@ pub const NUMBERS: [Number; 8] = [
     (
         HIGHEST,
         "the highest SPH density at an agent: the kernel of the model (Eq. 5) with a support radius of 1 m over the \
-         agent itself and the agents and walls around it; a person alone has 1.27 P/m². Observed in every coarse frame",
+         agent itself and the agents and walls around it; a person of mass 1 has 1.27 P/m² alone. \
+         Observed in every coarse frame",
         |run| run.highest_density.map(|highest| highest.density_per_m2),
     ),
     ("stuck", "agents at the end that make no headway", |run| {
@@ -99,7 +100,12 @@ pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
             facts.push(Fact::new(
                 "its place and time",
                 format!("({x:.2}, {y:.2}) m, {secs:.2} s"),
-                "place of the agent with the highest density, and when it had it first",
+                format!(
+                    "place of the agent with the highest density, and when it had it first{}",
+                    highest
+                        .of_large()
+                        .map_or(String::new(), |large| format!("; {large}"))
+                ),
             ));
         }
     }
@@ -119,7 +125,7 @@ pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
                 &format!("outside of the line of {before}"),
                 format!("{} people at {:.0} s", outside.agents, outside.at_secs),
                 format!(
-                    "most people at one time who found no room on its line; {} stood there, {:.0} s each on average",
+                    "most people at one time around its line when it was full; {} stood there, {:.0} s each on average",
                     outside.people, outside.mean_secs
                 ),
             ));

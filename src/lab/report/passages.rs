@@ -68,23 +68,32 @@ impl Passages {
                 kind: place.kind.name(),
                 width,
                 open: open(scene, k, &place.kind),
+                most: match &place.kind {
+                    Kind::Exit(exit) => exit.most_per_sec,
+                    _ => None,
+                },
                 people,
                 times,
                 flow: lasts.map(|lasts| f64::from(people - 1) / lasts / width),
             })
         };
         let rows: Vec<Row> = places.filter_map(row).collect();
-        let table = Table::of(&rows)
+        let mut table = Table::of(&rows)
             .column("place", |row| row.name.as_str())
             .column("kind", |row| row.kind)
             .fixed("free width [m]", 2, |row| row.width)
-            .column("open [s]", |row| row.open.as_str())
+            .column("open [s]", |row| row.open.as_str());
+        if rows.iter().any(|row| row.most.is_some()) {
+            table = table.column("at most [P/s]", |row| row.most);
+        }
+        let table = table
             .column("people", |row| row.people)
             .fixed("first [s]", 1, |row| row.times.map(|[first, _]| first))
             .fixed("last [s]", 1, |row| row.times.map(|[_, last]| last))
             .fixed("P/(m s)", 2, |row| row.flow)
             .table();
-        let caption = "Free width: the length of the line without walls on it. Open: by timetable and events. P/(m s): \
+        let caption = "Free width: the length of the line without walls on it. Open: by timetable and events. At most: the limit \
+                       `most_per_sec` of an exit. P/(m s): \
                        the people after the first one, per meter of free width and second between the first and the \
                        last one.";
         (!rows.is_empty()).then(|| Block::Table(table, caption.to_owned()))
@@ -97,6 +106,7 @@ struct Row {
     kind: &'static str,
     width: f64,
     open: String,
+    most: Option<f64>,
     people: u32,
     times: Option<[f64; 2]>,
     flow: Option<f64>,

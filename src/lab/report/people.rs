@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::passages::Passages;
+use crate::engine::journeys::{Kind, Place};
 use crate::engine::scene::{Group, Scene};
 use crate::output::document::Block;
 use crate::output::table::Table;
@@ -23,6 +24,8 @@ struct Row<'a> {
     entered: u32,
     speed: String,
     premovement: String,
+    radius: Option<String>,
+    mass: Option<String>,
     goal: String,
 }
 
@@ -54,17 +57,26 @@ pub fn table(scenario: &Scenario, passages: &Passages) -> Block {
                 Some(given) => words(given),
                 None => own_values(scene, k, |one| one.premovement, 0.0),
             },
+            radius: own.and_then(|item| item.get("radius")).map(words),
+            mass: own.and_then(|item| item.get("mass")).map(words),
             goal: goal(scene, group),
         }
     });
     let rows: Vec<Row> = rows.collect();
-    let table = Table::of(&rows)
+    let mut table = Table::of(&rows)
         .column("people", |row| row.name.as_str())
         .column("at the start", |row| row.start)
         .column("entered", |row| row.entered)
         .column("walking speed [m/s]", |row| row.speed.as_str())
         .column("premovement [s]", |row| row.premovement.as_str())
-        .column("motivation", |row| row.group.motivation)
+        .column("motivation", |row| row.group.motivation);
+    if rows.iter().any(|row| row.radius.is_some()) {
+        table = table.column("radius [m]", |row| row.radius.as_deref());
+    }
+    if rows.iter().any(|row| row.mass.is_some()) {
+        table = table.column("mass [1]", |row| row.mass.as_deref());
+    }
+    let table = table
         .column("journey or goal", |row| row.goal.as_str())
         .table();
     let caption = "Walking speeds and times before people walk (premovement) as the scenario gives them: a number, or \
@@ -106,6 +118,36 @@ fn own_values(
         true => format!("{least} to {most}"),
         false if own.is_empty() => default.to_string(),
         false => least.to_string(),
+    }
+}
+
+/// How long people stay at a waiting area or a queue, as the scenario gives it, and for how many there is room.
+pub fn held(scenario: &Scenario, place: &Place) -> String {
+    let given = |list: &str, key: &str| {
+        let items = scenario.document.get(list).and_then(Value::as_array);
+        let mut items = items.into_iter().flatten();
+        let own = items.find(|item| item["name"] == place.name.as_str());
+        own.and_then(|item| item.get(key)).map(words)
+    };
+    match &place.kind {
+        Kind::Queue(line) => {
+            let secs = given("queues", "service_secs").unwrap_or_default();
+            format!(
+                "served by {} at a time, {secs} s each; room for {}",
+                line.servers,
+                line.room()
+            )
+        }
+        Kind::Waiting(waiting) => {
+            let until = waiting.until.map(|until| format!("until {until} s"));
+            let lasting = given("waiting_areas", "for_secs").map(|secs| format!("for {secs} s"));
+            let all: Vec<String> = until.into_iter().chain(lasting).collect();
+            match all.is_empty() {
+                true => "to the end".to_owned(),
+                false => all.join(" and "),
+            }
+        }
+        _ => String::new(),
     }
 }
 

@@ -14,6 +14,7 @@ use crate::output::results;
 use crate::output::table::Table;
 use crate::runs::drive::Run;
 use crate::runs::identity::{ENGINE, Identity, sha256};
+use crate::runs::notes;
 use crate::runs::summary::{JourneyResult, PlaceResult, Summary};
 use crate::scenario::Scenario;
 use crate::scenario::measurements::Measurement;
@@ -48,6 +49,7 @@ pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> io::Result<Docu
     let overview = facts::overview(&summary, &run.reason());
     blocks.push(Block::Table(facts::table(&overview), String::new()));
     blocks.extend(facts::stuck(&summary));
+    blocks.extend(notes(run));
     let mut pictures = pictures(run, watched).into_iter();
     blocks.push(Block::heading("Scenario"));
     blocks.push(about(scenario, &summary));
@@ -59,7 +61,7 @@ pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> io::Result<Docu
         blocks.push(Block::heading("Exits, doors and gates"));
         blocks.push(table);
     }
-    blocks.extend(waits(&summary.places));
+    blocks.extend(waits(scenario, &summary.places));
     blocks.push(Block::heading("Settings that differ from the defaults"));
     blocks.push(settings::changed(scenario));
     blocks.extend(egress(simulation, &summary));
@@ -85,6 +87,17 @@ pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> io::Result<Docu
         subtitle: scenario.description.clone(),
         blocks,
     })
+}
+
+/// What the program said of the scenario and of the run; nothing if it said nothing.
+fn notes(run: &Run) -> Vec<Block> {
+    let of_step = notes::of_step(&run.scenario.scene).into_iter();
+    let all = of_step.chain(run.scenario.notes.iter().cloned());
+    let all: Vec<String> = all.chain(notes::of(run)).collect();
+    match all.is_empty() {
+        true => Vec::new(),
+        false => vec![Block::heading("Notes of the program"), Block::List(all)],
+    }
 }
 
 /// The pictures of the run, the first one first.
@@ -167,13 +180,19 @@ fn files(files: &[InputFile]) -> io::Result<Block> {
     Ok(Block::Table(table, caption.to_owned()))
 }
 
-/// Waiting areas and queues; nothing without any.
-fn waits(places: &[PlaceResult]) -> Vec<Block> {
+/// Waiting areas and queues, with the times there as given; nothing without any.
+fn waits(scenario: &Scenario, places: &[PlaceResult]) -> Vec<Block> {
+    let all = &scenario.scene.journeys.places;
+    let held = |row: &PlaceResult| {
+        let place = all.iter().find(|place| place.name == row.name);
+        place.map_or(String::new(), |place| people::held(scenario, place))
+    };
     let waits = |place: &&PlaceResult| ["waiting area", "queue"].contains(&place.kind.as_str());
     let rows: Vec<&PlaceResult> = places.iter().filter(waits).collect();
     let table = Table::of(&rows)
         .column("place", |row| shown(&row.name))
         .column("kind", |row| row.kind.as_str())
+        .column("people stay", |row| held(row))
         .column("people", |row| row.passed)
         .fixed("mean wait [s]", 1, |row| row.waited_secs)
         .table();

@@ -2,7 +2,8 @@
 
 use super::comparison::Band;
 use super::published::{PublishedRow, published, written};
-use super::table1::{BANDS, value_with_band, varied};
+use super::row::BANDS_IN_WORDS;
+use super::table1::{value_with_band, varied};
 use crate::lab::error::LabError;
 use crate::lab::estimate::{ABOUT, Answer, Answers, Reached};
 use crate::lab::sweep::Cell;
@@ -61,7 +62,7 @@ pub fn estimated(answers: &Answers) -> Result<String, LabError> {
     let [kept, undecided, missed] = counts;
     Ok(format!(
         "{}\n{kept} of {} values are inside their bands with their whole interval, {missed} outside, {undecided} \
-         neither: {BANDS}. The paper's values are those of its time step, ours of the limit of fine steps. {ABOUT}\n",
+         neither: {BANDS_IN_WORDS}. The paper's values are those of its time step, ours of the limit of fine steps. {ABOUT}\n",
         columns.table().markdown(),
         counts.iter().sum::<usize>(),
     ))

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::comparison::Band;
 use super::product::{Needs, Product};
 use super::published::{PublishedRow, Varied, published};
-use super::row::{self, Row, compared, profiles};
+use super::row::{self, BANDS, Row, compared, profiles};
 use crate::lab::error::LabError;
 use crate::lab::sweep::{Combination, Gathered};
 use crate::runs::store::Store;
@@ -32,35 +32,17 @@ const METRICS: [&str; 3] = ["density_mean_15s", "density_std_15s", "flow_per_s"]
 /// # Errors
 /// The paper's values cannot be read.
 pub fn rows(results: &Gathered) -> Result<Vec<Row>, LabError> {
-    let row = |(paper, ours): (PublishedRow, &Combination)| {
-        let bands = bands(&paper).map(Some);
-        Row::new(paper, ours, METRICS, bands)
-    };
+    let row = |(paper, ours): (PublishedRow, &Combination)| Row::new(paper, ours, METRICS);
     let ours = results.combinations();
     let paper = published()?.table1.rows.into_iter();
     Ok(paper.zip(&ours).map(row).collect())
 }
 
-/// The bands of density, deviation and flow.
-fn bands(paper: &PublishedRow) -> [Band; 3] {
-    let plain = ["sf", "rvo"].contains(&paper.profile.as_str());
-    let (density, flow) = if plain { (0.04, 0.25) } else { (0.015, 0.10) };
-    [
-        Band::Relative(density),
-        Band::Absolute(0.12),
-        Band::Relative(flow),
-    ]
-}
-
-/// The same in words.
-pub(super) const BANDS: &str = "density 1.5 %, 4 % for SF and RVO; its deviation 0.12 P/m²; flow 10 %, 25 % for SF and \
-                                RVO";
-
 /// The paper's value of one of our measurements, with its band.
 pub(super) fn value_with_band(paper: &PublishedRow, metric: &str) -> Option<(f64, Band)> {
     let k = METRICS.iter().position(|own| *own == metric)?;
     let values = [paper.density, paper.deviation, paper.flow];
-    Some((values[k], bands(paper)[k]))
+    Some((values[k], BANDS[k]))
 }
 
 /// The paper's values for a run of the evacuation with the settings of one of the table's rows, by the names of our
@@ -113,14 +95,6 @@ fn has_settings_of(scenario: &Scenario, row: &PublishedRow) -> bool {
     })
 }
 
-/// "kept", or the quantities outside of their bands.
-fn verdict(row: &Row) -> String {
-    match row.missed().as_slice() {
-        [] => "kept".to_owned(),
-        missed => format!("**missed**: {}", missed.join(", ")),
-    }
-}
-
 /// A parameter and its value in the paper's notation.
 pub(super) fn varied(Varied { setting, value }: &Varied) -> String {
     let symbol = match setting.as_str() {
@@ -136,12 +110,7 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
     let published = published()?;
     let rows = rows(results)?;
     let seeds = results.study.seeds;
-    let kept = rows.iter().filter(|row| row.missed().is_empty()).count();
-    let markdown = format!(
-        "{}\n{kept} of {} rows are inside their bands (means over {seeds} seed(s)): {BANDS}.\n",
-        markdown(&rows),
-        rows.len(),
-    );
+    let markdown = format!("{}\n{}\n", markdown(&rows), row::kept(&rows, seeds));
     let as_json = |row: &Row| {
         let mut value = json!(row);
         value["missed"] = json!(row.missed());
@@ -167,5 +136,8 @@ fn markdown(rows: &[Row]) -> String {
                 .and_then(|of| of.ours)
                 .map_or(0.0, |ours| ours.mean)
         });
-    compared(columns).column("band", verdict).table().markdown()
+    compared(columns)
+        .column("band", row::verdict)
+        .table()
+        .markdown()
 }

@@ -56,7 +56,7 @@ impl CrossingTable {
         let mut found = rankings("flow", &ranked(flow, |row| row.flow));
         found.extend(rankings("density", &ranked(density, |row| row.density)));
         let rows = paper.into_iter().zip(ours);
-        let rows = rows.map(|(row, ours)| Row::new(row, ours, METRICS, [None; 3]));
+        let rows = rows.map(|(row, ours)| Row::new(row, ours, METRICS));
         Ok(Self {
             rows: rows.collect(),
             rankings: found,
@@ -90,15 +90,19 @@ impl CrossingTable {
             .markdown()
     }
 
-    /// The rows, the rankings, and the number of rankings that are kept.
-    fn markdown(&self) -> String {
+    /// The rows, the rankings, and how many of both are kept.
+    fn markdown(&self, seeds: usize) -> String {
         let [flows, all_flows] = self.kept("flow");
         let [densities, all_densities] = self.kept("density");
         let percent = 100.0 * LEAST_DIFFERENCE;
         format!(
-            "{}\nOf the rows that differ by more than {percent} % in the paper, {flows} of {all_flows} rankings \
+            "{}\n{}\n\nOf the rows that differ by more than {percent} % in the paper, {flows} of {all_flows} rankings \
              of flow and {densities} of {all_densities} of density are kept.\n\n{}",
-            compared(profiles(&self.rows)).table().markdown(),
+            compared(profiles(&self.rows))
+                .column("band", row::verdict)
+                .table()
+                .markdown(),
+            row::kept(&self.rows, seeds),
             self.rankings_markdown()
         )
     }
@@ -108,7 +112,7 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
     let results = &studies[0];
     let published = published()?;
     let table = CrossingTable::new(&results.combinations())?;
-    let markdown = table.markdown();
+    let markdown = table.markdown(results.study.seeds);
     let as_json = |ranking: &Ranking| {
         let mut value = json!(ranking);
         value["kept"] = json!(ranking.is_kept());

@@ -76,31 +76,65 @@ pub fn check(places: &[Place], floor: &Floor) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Refuses two doors on one line.
+/// Refuses a door on the line of another door or of an exit.
 fn check_apart(places: &[Place]) -> Result<(), Problem> {
-    let doors = places.iter().filter(|place| is_door(place));
-    let doors: Vec<(&Place, [Vector; 2])> = doors
-        .filter_map(|door| Some((door, door.line()?)))
-        .collect();
-    for (k, &(door, [a, b])) in doors.iter().enumerate() {
-        let (along, length) = (direction(b - a), (b - a).norm());
-        let is_on = |&&(_, ends): &&(&Place, [Vector; 2])| {
-            let near = ends
-                .iter()
-                .all(|end| along.perp(&(end - a)).abs() <= ON_LINE);
-            let [from, to] = ends.map(|end| along.dot(&(end - a)));
-            near && from.max(to).min(length) - from.min(to).max(0.0) > OVERLAP
+    for (k, door, other) in on_one_line(places).filter(|(_, one, _)| is_door(one)) {
+        let (name, other_name) = (shown(&door.name), shown(&other.name));
+        let reason = match is_door(other) {
+            true => format!(
+                "`{name}` lies on the line of `{other_name}`: draw one door, with `one_way` and `closed_secs`, or move \
+                 one of them"
+            ),
+            false => format!(
+                "`{name}` lies on the line of the exit `{other_name}`, where people leave whatever the door says: give \
+                 the exit the `closed_secs`, or move one of them"
+            ),
         };
-        if let Some((other, _)) = doors[..k].iter().find(is_on) {
-            let reason = format!(
-                "`{}` lies on the line of `{}`: draw one door, with `one_way` and `closed_secs`, or move one of them",
-                shown(&door.name),
-                shown(&other.name)
-            );
-            return Err(Problem::new(format!("doors[{k}].line"), reason));
-        }
+        return Err(Problem::new(format!("doors[{k}].line"), reason));
     }
     Ok(())
+}
+
+/// Notes on exits on the lines of other exits.
+pub fn doubled(places: &[Place]) -> Vec<String> {
+    let exits = on_one_line(places).filter(|(_, one, other)| one.is_exit() && other.is_exit());
+    let note = |(k, exit, other): (usize, &Place, &Place)| {
+        format!(
+            "exits[{k}].line: `{}` lies on the line of `{}`: people who may take both leave by the first one, and \
+             widths and flows count twice; draw one exit, or move one of them",
+            shown(&exit.name),
+            shown(&other.name)
+        )
+    };
+    exits.map(note).collect()
+}
+
+/// The exits, then the doors, that lie on the line of one before them; each with its number in its list.
+fn on_one_line(places: &[Place]) -> impl Iterator<Item = (usize, &Place, &Place)> {
+    let [exits, doors] = [Place::is_exit, is_door].map(|is_kind: fn(&Place) -> bool| {
+        let all = places.iter().filter(move |place| is_kind(place));
+        all.enumerate()
+    });
+    let all: Vec<(usize, &Place)> = exits.chain(doors).collect();
+    let lines_before = all.clone();
+    all.into_iter()
+        .enumerate()
+        .filter_map(move |(n, (k, one))| {
+            let line = one.line()?;
+            let mut before = lines_before[..n].iter();
+            let (_, other) =
+                before.find(|(_, other)| other.line().is_some_and(|o| overlap(line, o)))?;
+            Some((k, one, *other))
+        })
+}
+
+/// Whether the line from `a` to `b` lies on that with the other `ends`, over more than [`OVERLAP`] meters.
+fn overlap([a, b]: [Vector; 2], ends: [Vector; 2]) -> bool {
+    let (along, length) = (direction(b - a), (b - a).norm());
+    let mut all = ends.iter();
+    let near = all.all(|end| along.perp(&(end - a)).abs() <= ON_LINE);
+    let [from, to] = ends.map(|end| along.dot(&(end - a)));
+    near && from.max(to).min(length) - from.min(to).max(0.0) > OVERLAP
 }
 
 fn is_door(place: &Place) -> bool {

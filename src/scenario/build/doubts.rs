@@ -1,5 +1,5 @@
 //! Notes on scenarios that are valid but doubtful: a plan in another unit, journeys without end, no agents. Others are
-//! in `units.rs`, `eclipsed.rs`, `through_walls.rs` and `crossed.rs`.
+//! in `units.rs`, `eclipsed.rs`, `leaving.rs`, `through_walls.rs` and `crossed.rs`.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -11,7 +11,7 @@ use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Group, Scene};
 use crate::engine::ways::nearest_on;
 use crate::scenario::build::journeys::TO_EXIT;
-use crate::scenario::build::{eclipsed, through_walls, units};
+use crate::scenario::build::{eclipsed, leaving, through_walls, units};
 use crate::scenario::error::quote::shown;
 use crate::scenario::file::File;
 use crate::scenario::keys::people::Spacing;
@@ -44,6 +44,7 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
         .chain(eclipsed::notes(scene))
         .chain(through_walls::note(scene))
         .chain(endless(scene))
+        .chain(leaving::notes(keys, scene))
         .chain(coincident(scene))
         .chain(peaks(keys))
         .chain(spectra(keys))

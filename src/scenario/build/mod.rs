@@ -11,6 +11,7 @@ pub mod entrances;
 pub mod from;
 pub mod goals;
 pub mod journeys;
+mod leaving;
 pub mod need;
 pub mod numerics;
 pub mod off_floor;

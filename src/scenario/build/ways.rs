@@ -138,6 +138,7 @@ fn ways(
     prepared.check_goals(&ways)?;
     let stops = prepared.check_journeys(&ways, notes)?;
     notes.extend(doors::notes(places, &ways.floor, behind));
+    notes.extend(doors::doubled(places));
     prepared.check_bodies(&ways.floor, &stops, notes)?;
     // Where nothing can stand between a place of the floor and a goal, agents walk straight.
     let is_needed = has_journeys || !keys.doors.is_empty() || ways.bend();

@@ -13,8 +13,8 @@ use crate::engine::ways::nearest_on;
 /// Agents that entered less than this ago have just started, seconds.
 const STARTING: f64 = 3.0;
 
-/// The agents outside of the line of a queue: those who have joined it when it was full, and slow ones around it who
-/// have not joined it.
+/// The agents outside of the line of a queue while it is full: those who have joined it beyond its room, and slow ones
+/// around it who have not joined it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outside {
     /// The largest number at one time.
@@ -79,8 +79,8 @@ impl Lines {
     }
 }
 
-/// The agents outside of the line of the queue at place `number`: those who have joined it beyond its room, and slow
-/// ones who have not joined it, from the line up to the first gap.
+/// The agents outside of the line of the queue at place `number`, if it is full: those who have joined it beyond its
+/// room, and slow ones who have not joined it, from the line up to the first gap.
 fn outside(simulation: &Simulation, number: u16, line: &Queue) -> Vec<usize> {
     let frame = simulation.frame();
     let (agents, now) = (frame.agents, frame.clock.time());
@@ -100,6 +100,9 @@ fn outside(simulation: &Simulation, number: u16, line: &Queue) -> Vec<usize> {
             }
             _ => {}
         }
+    }
+    if joined.len() < line.room() as usize {
+        return Vec::new();
     }
     joined.sort_unstable();
     around.sort_by(|(a, _), (b, _)| a.total_cmp(b)); // stable

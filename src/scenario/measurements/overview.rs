@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::is_due;
 use super::queues::{EVERY, LongestQueue, Queues};
 use super::stuck::Headway;
+use crate::engine::kernel;
 use crate::engine::simulation::Simulation;
 
 /// The highest density of a run.
@@ -18,6 +19,24 @@ pub struct HighestDensity {
     pub at: [f64; 2],
     /// Its id.
     pub agent: u32,
+    /// Its mass m_i, 1 for a person of average size.
+    pub mass: f64,
+}
+
+/// Bodies with more mass are not those of persons of ordinary size.
+const LARGE: f64 = 1.5;
+
+impl HighestDensity {
+    /// What to know if its body is large: how dense it is alone.
+    pub fn of_large(&self) -> Option<String> {
+        let alone = self.mass * kernel::density(0.0, 1.0);
+        (self.mass > LARGE).then(|| {
+            format!(
+                "at a body of mass {}, which has {alone:.2} P/m² alone",
+                self.mass
+            )
+        })
+    }
 }
 
 /// The highest density and the longest queues so far.
@@ -67,6 +86,7 @@ impl Overview {
                 at_secs: frame.clock.time(),
                 at: frame.agents.position[i].into(),
                 agent: frame.agents.id[i],
+                mass: frame.agents.mass[i],
             });
         }
     }

@@ -146,6 +146,9 @@ fn course(simulation: &Simulation, ways: &Ways, (i, to): (usize, Destination)) -
         Detour::Room => None,
     });
     let through = step.and_then(|(plan, step)| {
+        if simulation.progress().places.iter().any(|place| !place.open) {
+            return simulation.way_through(i, plan.goal, step);
+        }
         let rooms = ways.rooms()?;
         let here = rooms.floor.locate_or_nearest(Some(plan.triangle), p)?;
         let mut course = rooms.course((p, here), usize::from(plan.goal), Some(step));

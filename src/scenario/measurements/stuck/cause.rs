@@ -42,7 +42,11 @@ fn likely(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> Stri
         return reason;
     }
     let ahead = heading(simulation, i, aim);
+    let limit = limit(simulation, aim);
     if ahead == Vector::zeros() {
+        if let Some(limit) = limit {
+            return limit;
+        }
         return "it stands where it wants to be, and does not leave there".to_owned();
     }
     let touching = blockers(simulation, i, TOUCHING, (aim, ahead));
@@ -72,7 +76,7 @@ fn likely(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> Stri
                 "others block its way, in a crowd that moves: {leaving} left{to} in the last {STUCK_AFTER} s"
             )
         }
-        Some(Blockers::Others) => "others block its way".to_owned(),
+        Some(Blockers::Others) => limit.unwrap_or_else(|| "others block its way".to_owned()),
         Some(Blockers::HeadOn) => {
             "two agents exactly head-on block each other; move one by a centimeter".to_owned()
         }
@@ -80,9 +84,33 @@ fn likely(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> Stri
             "agents that walk the other way block it; in narrow places that can last for good"
                 .to_owned()
         }
-        None if pressing.is_empty() => "the forces on it cancel out".to_owned(),
+        None if pressing.is_empty() => {
+            limit.unwrap_or_else(|| "the forces on it cancel out".to_owned())
+        }
         None => "it walks against a wall".to_owned(),
     }
+}
+
+/// How an exit holds people back that passes a limited number per second, if it does so now.
+fn limit(simulation: &Simulation, aim: Aim) -> Option<String> {
+    let Aim::Place(number) = aim else {
+        return None;
+    };
+    let place = &simulation.scene().journeys.places[usize::from(number)];
+    let Kind::Exit(exit) = &place.kind else {
+        return None;
+    };
+    let (rate, ready) = (
+        exit.most_per_sec?,
+        simulation.progress().places[usize::from(number)].ready,
+    );
+    (simulation.frame().clock.time() < ready).then(|| {
+        format!(
+            "the exit `{}` lets one person pass every {:.1} s (`most_per_sec` {rate})",
+            shown(&place.name),
+            1.0 / rate
+        )
+    })
 }
 
 /// From agent `i` to the nearest points of walls that touch its body and lie ahead.

@@ -1,0 +1,161 @@
+//! Notes on a run: what a reader of its results should know.
+
+use crate::analysis::stability::{FITTED, Scheme, three_digits};
+use crate::engine::clock::SHORTEST_TIME_STEP;
+use crate::engine::forces::rates::Rates;
+use crate::engine::journeys::Kind;
+use crate::engine::scene::Scene;
+use crate::engine::simulation::{EventKind, Limited, SPOT_RADIUS};
+use crate::runs::drive::Run;
+use crate::scenario::measurements::LongestQueue;
+use crate::scenario::quote::shown;
+use crate::scenario::{automatic_step, doubtful_radius, tidy};
+
+/// Notes on displaced agents, stopped moves, clamped speeds, agents that waited for room, queues that were too long for
+/// their line or too dense, and pushes without agents.
+pub fn of(run: &Run) -> Vec<String> {
+    let queues = run.metrics.longest_queues(&run.simulation);
+    let packed = queues.iter().filter_map(LongestQueue::packed);
+    let all = moved(run).into_iter().chain(waited(run));
+    let all = all.chain(packed).chain(idle_pushes(run));
+    all.map(|note| tidy(&note)).collect()
+}
+
+/// Notes on agents and moves that were corrected.
+fn moved(run: &Run) -> Vec<String> {
+    let (scene, outcome) = (run.simulation.scene(), run.simulation.outcome());
+    let mut notes = Vec::new();
+    if let Some((first, _)) = outcome.displaced.first() {
+        let count = outcome.displaced.len();
+        let first = displaced(&run.scenario.scene, *first);
+        notes.push(format!(
+            "{count} agent(s) entered inside an obstacle or outside of the walkable area and were moved to the nearest \
+             free point (the first: {first})"
+        ));
+    }
+    if outcome.contained.count > 0 {
+        let moves = limited(&outcome.contained, outcome.moves);
+        notes.push(format!(
+            "walls stopped {moves}, which would have crossed them"
+        ));
+    }
+    if outcome.clamped.count > 0 {
+        let mut groups = scene.groups.iter();
+        let differ = groups.any(|group| group.traits.preferred_speed.is_some());
+        let most = match differ {
+            true => "the agents' own max_speed".to_owned(),
+            false => format!("max_speed, {} m/s", scene.max_speed),
+        };
+        let moves = limited(&outcome.clamped, outcome.moves);
+        notes.push(format!("{most}, limited {moves}"));
+    }
+    notes
+}
+
+/// Notes on agents that waited for room to enter, and on queues that were longer than their line.
+fn waited(run: &Run) -> Vec<String> {
+    let simulation = &run.simulation;
+    let backlogs = simulation.backlogs().filter(|one| one.largest > 0);
+    let backlogs = backlogs.map(|backlog| {
+        let time = simulation.frame().clock.time_at(backlog.largest_frame);
+        let rest = match backlog.waiting {
+            0 => String::new(),
+            waiting => format!("; {waiting} still wait"),
+        };
+        format!(
+            "up to {} agent(s) waited for room at \"{}\" (first at {time:.1} s){rest}",
+            backlog.largest,
+            shown(backlog.name)
+        )
+    });
+    let places = simulation.scene().journeys.places.iter();
+    let places = places.zip(&simulation.progress().places);
+    let queues = places.filter_map(|(place, state)| {
+        let Kind::Queue(queue) = &place.kind else {
+            return None;
+        };
+        (state.longest > queue.room()).then(|| {
+            format!(
+                "up to {} agents stood in the queue \"{}\", whose line of {:.1} m has room for {}: the others gathered \
+                 at its end",
+                state.longest,
+                shown(&place.name),
+                queue.length,
+                queue.room()
+            )
+        })
+    });
+    backlogs.chain(queues).collect()
+}
+
+/// Notes on pushes without agents.
+fn idle_pushes(run: &Run) -> Vec<String> {
+    let events = run.simulation.events().iter();
+    let idle = events.filter(|event| event.kind == EventKind::PushBegan(0));
+    let note = |name: &str| {
+        format!(
+            "no agents were in the region of \"{}\" when it began",
+            shown(name)
+        )
+    };
+    idle.map(|event| note(&event.name)).collect()
+}
+
+/// A warning if the time step is longer than the stability limit of a crowd at rest, if that is known for the integrator.
+pub fn of_step(scene: &Scene) -> Option<String> {
+    let scheme = Scheme::of(scene.integrator)?;
+    let step = scene.clock.time_step();
+    let largest = Rates::of(scene).largest_step(scheme, &FITTED);
+    if step <= largest {
+        return None;
+    }
+    let automatic = automatic_step(scene).filter(|&step| step >= SHORTEST_TIME_STEP);
+    let advice = match automatic {
+        Some(automatic) => format!("--time-step auto uses {}", three_digits(automatic)),
+        None => {
+            "no allowed step is short enough: lower the stiffness or raise the masses".to_owned()
+        }
+    };
+    let advice = match doubtful_radius(scene) {
+        Some(radius) => format!(
+            "such agents, with a radius of {} m, are lighter than people: check `radius`",
+            three_digits(radius)
+        ),
+        None => advice,
+    };
+    Some(tidy(&format!(
+        "time_step_secs {step} is {} times {}, the largest step at which a crowd comes to rest; {advice}",
+        three_digits(step / largest),
+        three_digits(largest),
+    )))
+}
+
+/// An agent that was moved to a free point; from where and how far, if it stood there at the start.
+fn displaced(scene: &Scene, agent: u32) -> String {
+    let start = scene.agents.get(agent as usize).map(|new| new.position);
+    let free = start.and_then(|start| scene.walls.free_point_near(start));
+    let from = start.zip(free).map(|(start, free)| {
+        let distance = (free - start).norm();
+        format!(", from ({}, {}) by {distance:.2} m", start.x, start.y)
+    });
+    format!("agent {agent}{}", from.unwrap_or_default())
+}
+
+/// The number of limited moves among all `moves`, and the place where most of them began.
+fn limited(limited: &Limited, moves: u64) -> String {
+    let count = limited.count;
+    let percent = 100.0 * count as f64 / moves.max(1) as f64;
+    let share = match percent {
+        0.095.. => format!("{percent:.1} % of all moves"),
+        _ => format!("{count} of {moves} moves"),
+    };
+    let place = limited.spot().map(|(at, there)| {
+        let part = match there {
+            there if there == count => "all of them".to_owned(),
+            there if 2 * there > count => "most of them".to_owned(),
+            there => format!("{:.0} % of them", 100.0 * there as f64 / count as f64),
+        };
+        format!(", {part} within {SPOT_RADIUS} m of ({}, {})", at.x, at.y)
+    });
+    share + &place.unwrap_or_default()
+}

@@ -1,0 +1,112 @@
+//! Notes on agents that cannot leave, leave at once, or have no room where they enter and wait.
+
+use crate::engine::agents::{NewAgent, REFERENCE_RADIUS};
+use crate::engine::journeys::{Kind, Place};
+use crate::engine::scene::{Group, Scene, Source};
+use crate::scenario::error::numbers::brief;
+use crate::scenario::error::quote::shown;
+use crate::scenario::file::File;
+
+/// Bodies touch where more people stand on a square meter (Fruin's level F for queues).
+const TOUCHING: f64 = 5.4;
+
+/// The notes on a complete scene.
+pub fn notes(keys: &File, scene: &Scene) -> Vec<String> {
+    let trapped = trapped(keys, scene).into_iter();
+    let all = trapped.chain(at_once(scene)).chain(overfull(scene));
+    all.chain(overrun(scene)).collect()
+}
+
+fn group(scene: &Scene, k: u16) -> &Group {
+    &scene.groups[usize::from(k)]
+}
+
+/// A note on a run that is to end when the floor is empty, but that no agent can leave.
+fn trapped(keys: &File, scene: &Scene) -> Option<String> {
+    let leaves = |one: &Group| {
+        let journey = one
+            .journey
+            .map(|k| &scene.journeys.journeys[usize::from(k)]);
+        let mut stages = journey.into_iter().flat_map(|journey| &journey.stages);
+        let place = |k: &u16| &scene.journeys.places[usize::from(*k)];
+        one.removal_radius.is_some()
+            || stages.any(|stage| stage.places.iter().any(|k| place(k).is_exit()))
+    };
+    let used = scene.agents.iter().map(|agent| agent.group);
+    let used = used.chain(scene.sources.iter().map(|source| source.group));
+    let mut used = used.chain(scene.entrances.iter().map(|entrance| entrance.group));
+    let is_closed = scene.period.is_none() && !used.any(|k| leaves(group(scene, k)));
+    (keys.stop.when_empty && is_closed).then(|| {
+        "stop.when_empty: no agent can leave, so the run ends at its duration: give groups a journey to an exit, or a \
+         goal with `remove_within`"
+            .to_owned()
+    })
+}
+
+/// A note on agents that start where they leave.
+fn at_once(scene: &Scene) -> Option<String> {
+    let leaves = |agent: &&NewAgent| {
+        let radius = group(scene, agent.group).removal_radius;
+        radius.is_some_and(|radius| (agent.goal - agent.position).norm() <= radius)
+    };
+    let mut there = scene.agents.iter().filter(leaves).peekable();
+    let first = group(scene, there.peek()?.group);
+    let (radius, name) = (first.removal_radius.unwrap_or_default(), shown(&first.name));
+    let (count, all) = (there.count(), scene.agents.len());
+    Some(format!(
+        "{name}: {count} of the {all} agents at the start leave at once: they are within `remove_within`, {radius} m, of \
+         their goal"
+    ))
+}
+
+/// Notes on waiting areas that are too small for the agents that start and all wait there.
+fn overfull(scene: &Scene) -> Vec<String> {
+    let sent = |number: usize| {
+        let waits = |agent: &&NewAgent| {
+            let journey = group(scene, agent.group).journey;
+            let journey = journey.map(|k| &scene.journeys.journeys[usize::from(k)]);
+            let mut stages = journey.into_iter().flat_map(|journey| &journey.stages);
+            stages.any(|stage| stage.places == [number as u16])
+        };
+        scene.agents.iter().filter(waits).count()
+    };
+    let note = |(number, place): (usize, &Place)| {
+        let Kind::Waiting(waiting) = &place.kind else {
+            return None;
+        };
+        waiting.until?;
+        let (people, size) = (sent(number), waiting.area.area());
+        let most = (TOUCHING * size).floor();
+        (people as f64 > most).then(|| {
+            format!(
+                "waiting_areas: {people} agents are sent to `{}`, {size:.1} m², where bodies touch from {most} on; give \
+                 it more room, or send fewer",
+                shown(&place.name)
+            )
+        })
+    };
+    let places = scene.journeys.places.iter().enumerate();
+    places.filter_map(note).collect()
+}
+
+/// Notes on sources whose agents enter where those before still stand.
+fn overrun(scene: &Scene) -> Vec<String> {
+    let note = |(k, source): (usize, &Source)| {
+        let traits = &group(scene, source.group).traits;
+        let speed = traits.preferred_speed.as_ref().map(|one| one.quantile(0.5));
+        let way = source.every * speed.unwrap_or(scene.preferred_speed);
+        let radius = traits.radius.as_ref().map(|one| one.quantile(0.5));
+        let width = 2.0 * radius.unwrap_or(REFERENCE_RADIUS);
+        let repeats = source.times != Some(1);
+        (repeats && way < width).then(|| {
+            format!(
+                "sources[{k}].every_secs: agents walk {} m in {} s, less than the width of a body: they enter on top of \
+                 those before; `entrances` wait for room",
+                brief(way),
+                brief(source.every)
+            )
+        })
+    };
+    let sources = scene.sources.iter().enumerate();
+    sources.filter_map(note).collect()
+}

@@ -1,0 +1,112 @@
+//! Notes on agents that cannot leave, leave at once, or have no room where they enter and wait.
+
+use serde_json::{Value, json};
+
+use crate::common::simulated::{measured, scenario};
+
+/// A room of 14 m × 8 m with an exit and people.
+fn room(number: u32) -> Value {
+    json!({
+        "profile": "steer+sph", "duration_secs": 60,
+        "walkable_area": [[[[0, 0], [14, 0], [14, 8], [0, 8]]]],
+        "exits": [{"name": "ramp", "line": [[14, 3], [14, 5]]}],
+        "stop": {"when_empty": true},
+        "crowds": [{"name": "crowd", "area": [[1, 1], [6, 1], [6, 7], [1, 7]], "number": number}]
+    })
+}
+
+fn notes(document: &Value) -> Vec<String> {
+    scenario(document, &[]).unwrap().notes
+}
+
+#[test]
+fn a_run_that_waits_for_an_empty_floor_that_no_agent_can_leave_gets_a_note() {
+    let mut document = room(20);
+    assert_eq!(notes(&document), [""; 0]);
+    document["exits"] = json!([]);
+    document["goal"] = json!([13, 4]);
+    let said = notes(&document);
+    assert!(
+        said.iter()
+            .any(|note| note.starts_with("stop.when_empty: no agent can leave")),
+        "{said:?}"
+    );
+    assert_eq!(measured(document.clone()).arrived, 0);
+    document["remove_within"] = json!(0.5);
+    let said = notes(&document);
+    assert!(
+        !said.iter().any(|note| note.contains("no agent can leave")),
+        "{said:?}"
+    );
+}
+
+#[test]
+fn agents_that_start_where_they_leave_get_a_note_with_their_number() {
+    let mut document = room(20);
+    document["exits"] = json!([]);
+    document["goal"] = json!([6, 4]);
+    document["remove_within"] = json!(2.5);
+    let said = notes(&document);
+    let note = said
+        .iter()
+        .find(|note| note.contains("leave at once"))
+        .unwrap();
+    let count: usize = note
+        .split([' ', ':'])
+        .find_map(|word| word.parse().ok())
+        .unwrap();
+    let scene = scenario(&document, &[]).unwrap().scene;
+    let near = scene
+        .agents
+        .iter()
+        .filter(|one| (one.position - one.goal).norm() <= 2.5);
+    assert_eq!(count, near.count());
+    assert!((1..20).contains(&count));
+}
+
+#[test]
+fn a_waiting_area_without_room_for_all_gets_a_note() {
+    let small = |number| {
+        let mut document = room(number);
+        document["waiting_areas"] = json!([
+            {"name": "pit", "area": [[10, 3], [12, 3], [12, 4], [10, 4]], "until_secs": 30}
+        ]);
+        document["journeys"] = json!([{"name": "j", "stages": ["pit", "ramp"]}]);
+        document["crowds"][0]["journey"] = json!("j");
+        notes(&document)
+    };
+    assert_eq!(small(10), [""; 0]);
+    let said = "waiting_areas: 11 agents are sent to `pit`, 2.0 m², where bodies touch from 10 on; give it more room, or \
+                send fewer";
+    assert_eq!(small(11), [said]);
+}
+
+#[test]
+fn a_source_whose_agents_enter_on_top_of_each_other_gets_a_note() {
+    let every = |secs: f64| {
+        let mut document = room(1);
+        document["sources"] = json!([{
+            "name": "tap", "min": [2, 4], "max": [2, 4], "columns": 1, "rows": 1, "every_secs": secs, "times": 20
+        }]);
+        notes(&document)
+    };
+    assert_eq!(every(1.0), [""; 0]);
+    let said = every(0.05).join("\n");
+    assert!(
+        said.contains("sources[0].every_secs: agents walk 0.07 m in 0.05 s"),
+        "{said}"
+    );
+}
+
+#[test]
+fn the_density_of_a_large_body_is_said_to_be_its_own() {
+    let mut document = room(1);
+    document["crowds"][0]["mass"] = json!(2.5);
+    let highest = measured(document).highest_density.unwrap();
+    assert_eq!(highest.mass, 2.5);
+    let alone = 4.0 / std::f64::consts::PI * 2.5;
+    assert!((highest.density_per_m2 - alone).abs() < 0.05 * alone);
+    let said = format!("at a body of mass 2.5, which has {alone:.2} P/m² alone");
+    assert_eq!(highest.of_large(), Some(said));
+    assert_eq!(measured(room(1)).highest_density.unwrap().of_large(), None);
+}
