@@ -178,8 +178,7 @@ fn of_scenario(options: &ReportOptions, mut outputs: Outputs) -> Result<Document
         report: &report,
         files,
     };
-    let unread = |error: std::io::Error| Failure::Input(format!("{}: {error}", options.run));
-    of_run(&run, &watched, sources).map_err(unread)
+    Ok(of_run(&run, &watched, sources)?)
 }
 
 /// A file of the run; `key` names it.

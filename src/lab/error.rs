@@ -1,5 +1,8 @@
 //! Errors of experiments.
 
+use std::io;
+use std::path::PathBuf;
+
 use crate::output::plot::PlotError;
 use crate::runs::error::{RunError, StoreError};
 
@@ -27,6 +30,14 @@ pub enum LabError {
         case: String,
         /// The requested result.
         what: String,
+    },
+    /// A file of a run can no longer be read.
+    #[error("{}: {error}", .file.display())]
+    Unread {
+        /// The file.
+        file: PathBuf,
+        /// The reason.
+        error: io::Error,
     },
     /// A picture cannot be made.
     #[error(transparent)]

@@ -2,6 +2,7 @@
 //! pictures, the limits of the model, the status of the profiles, and how to run it again.
 
 mod facts;
+mod held_out;
 mod limits;
 mod passages;
 mod peaks;

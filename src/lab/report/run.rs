@@ -1,13 +1,14 @@
 //! The report of one run.
 
+use std::fs;
 use std::path::PathBuf;
-use std::{fs, io};
 
 use super::still::Still;
 use super::watched::Watched;
 use super::{facts, limits, people, settings, status};
 use crate::engine::simulation::Simulation;
 use crate::lab::egress::Egress;
+use crate::lab::error::LabError;
 use crate::lab::gallery::distinct;
 use crate::output::document::{Block, Document, print};
 use crate::output::results;
@@ -41,8 +42,8 @@ pub struct Sources<'a> {
 /// The report of a run that has ended, and was watched from its first frame on.
 ///
 /// # Errors
-/// A file of the run cannot be read.
-pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> io::Result<Document> {
+/// A file of the run cannot be read, or data that ship with the program are invalid.
+pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> Result<Document, LabError> {
     let (scenario, simulation) = (&run.scenario, &run.simulation);
     let summary = Summary::of(run);
     let mut blocks = vec![Block::heading("Results")];
@@ -80,7 +81,7 @@ pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> io::Result<Docu
     blocks.extend(status::status(
         &profiles,
         settings::changes_profile(scenario),
-    ));
+    )?);
     blocks.extend(again(scenario, &summary, sources.command, sources.report));
     Ok(Document {
         title: format!("Report on the run {}", scenario.name),
@@ -159,11 +160,12 @@ fn about(scenario: &Scenario, summary: &Summary) -> Block {
 }
 
 /// The files of the run with their digests.
-fn files(files: &[InputFile]) -> io::Result<Block> {
-    let row = |file: &InputFile| -> io::Result<[String; 3]> {
-        let digest = sha256(&fs::read(&file.path)?);
-        let name = file.path.file_name().unwrap_or_default().to_string_lossy();
-        Ok([shown(&name), file.what.clone(), digest])
+fn files(files: &[InputFile]) -> Result<Block, LabError> {
+    let row = |one: &InputFile| -> Result<[String; 3], LabError> {
+        let file = one.path.clone();
+        let bytes = fs::read(&file).map_err(|error| LabError::Unread { file, error })?;
+        let name = one.path.file_name().unwrap_or_default().to_string_lossy();
+        Ok([shown(&name), one.what.clone(), sha256(&bytes)])
     };
     let rows: Vec<[String; 3]> = files.iter().map(row).collect::<Result<_, _>>()?;
     if rows.is_empty() {

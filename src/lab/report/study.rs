@@ -92,7 +92,7 @@ pub fn of_study(gathered: &Gathered, [command, report]: [&str; 2]) -> Result<Doc
     blocks.extend(status::status(
         &profiles,
         scenarios.iter().any(settings::changes_profile),
-    ));
+    )?);
     blocks.push(Block::heading("How to run it again"));
     blocks.push(Block::Code(vec![command.to_owned(), report.to_owned()]));
     blocks.push(Block::Table(cells(gathered), format!(

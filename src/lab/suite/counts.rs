@@ -63,27 +63,30 @@ impl Report<'_> {
 
     /// The values of which `counts` is true, given the finding and the number of the check.
     fn line(&self, name: &str, counts: impl Fn(&Finding, usize) -> bool) -> Line {
-        let of_profile = self.profiles.iter().map(|profile| {
-            let own = self.findings.iter().filter(|one| one.profile == *profile);
-            let checks = own.flat_map(|one| {
-                one.checks
-                    .iter()
-                    .enumerate()
-                    .map(move |(k, check)| (one, k, check))
-            });
-            let checks = checks
-                .filter(|(finding, k, check)| check.expected.is_measured() && counts(finding, *k));
-            let passed: Vec<bool> = checks
-                .map(|(_, _, check)| Judgment::is_passed(check))
-                .collect();
-            [
-                passed.iter().filter(|&&passed| passed).count(),
-                passed.len(),
-            ]
-        });
+        let counts = |profile: &String| self.count(profile, &counts);
         Line {
             name: name.to_owned(),
-            counts: of_profile.collect(),
+            counts: self.profiles.iter().map(counts).collect(),
         }
+    }
+
+    /// The values of a profile of which `counts` is true that are as expected, and all of them.
+    pub(super) fn count(
+        &self,
+        profile: &str,
+        counts: impl Fn(&Finding, usize) -> bool,
+    ) -> [usize; 2] {
+        let own = self.findings.iter().filter(|one| one.profile == profile);
+        let checks = own.flat_map(|one| {
+            let checks = one.checks.iter().enumerate();
+            checks.map(move |(k, check)| (one, k, check))
+        });
+        let counted = checks
+            .filter(|(finding, k, check)| check.expected.is_measured() && counts(finding, *k));
+        let passed: Vec<bool> = counted
+            .map(|(_, _, check)| Judgment::is_passed(check))
+            .collect();
+        let inside = passed.iter().filter(|&&passed| passed).count();
+        [inside, passed.len()]
     }
 }

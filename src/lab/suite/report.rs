@@ -3,6 +3,7 @@
 use serde_json::json;
 
 use super::check::Judgment;
+use super::counts::is_fitted;
 use super::file::Suite;
 use super::keys::Case;
 use super::status::Passed;
@@ -219,19 +220,12 @@ impl<'a> Report<'a> {
             .filter(is_missed)
             .map(|case| case.name.clone())
             .collect();
-        let own = self.findings.iter().filter(|one| one.profile == profile);
-        let compared = own
-            .flat_map(|one| &one.checks)
-            .filter(|check| check.expected.is_measured());
-        let compared: Vec<bool> = compared.map(Judgment::is_passed).collect();
         Passed {
             cases: cases.len(),
             passed: cases.len() - missed.len(),
             missed,
-            values: [
-                compared.iter().filter(|&&inside| inside).count(),
-                compared.len(),
-            ],
+            values: self.count(profile, |_, _| true),
+            fitted: self.count(profile, is_fitted),
         }
     }
 

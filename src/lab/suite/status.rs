@@ -30,6 +30,14 @@ pub struct Passed {
     pub missed: Vec<String>,
     /// The number of values that are compared with measured ones, those within the tolerance first.
     pub values: [usize; 2],
+    /// Those of these values to which the profile was fitted.
+    #[serde(default, skip_serializing_if = "none")]
+    pub fitted: [usize; 2],
+}
+
+/// Whether nothing is counted.
+fn none([_, all]: &[usize; 2]) -> bool {
+    *all == 0
 }
 
 impl Status {

@@ -6,6 +6,7 @@ use super::{Axis, Cells, ColorBar, Corner, Mark, Panel, Print, Sheet, Style};
 const MARGIN: f64 = 6.0; // around the sheet
 const GAP: f64 = 9.0; // between panels, color bars and legends
 const BETWEEN: f64 = 5.0; // between a color bar and the next panel
+const ABOVE: f64 = 6.0; // between the titles of a row and the row above it, which has no numbers below it
 pub const TITLE: f64 = 12.0; // size of the title of a sheet
 pub const LABEL: f64 = 9.0; // size of titles of panels and labels of axes
 pub const NUMBER: f64 = 8.0; // size of numbers and legends
@@ -263,15 +264,8 @@ impl Layout {
         };
         let left = MARGIN + space.rows + space.left;
         let heading = height_of(title.len(), TITLE) + if title.is_empty() { 0.0 } else { 2.0 };
-        let mut y = MARGIN + heading - if heading > 0.0 { 0.0 } else { 2.0 };
-        let mut rows = Vec::new();
-        for row in 0..=(count / columns) {
-            let panels = sheet.panels.iter().skip(row * columns).take(columns);
-            let titles = panels.map(|panel| title_of(panel, sheet, print, width).len());
-            y += (height_of(titles.max().unwrap_or(0), LABEL) + 3.0).max(GAP);
-            rows.push(y);
-            y += height + below;
-        }
+        let begin = MARGIN + heading - if heading > 0.0 { 0.0 } else { 2.0 };
+        let rows = tops(sheet, print, columns, [width, height, below], begin);
         let top = rows[0];
         let at = |column, row: usize| [left + column as f64 * step, rows[row]];
         let [right, foot] = at(columns - 1, (count - 1) / columns);
@@ -307,6 +301,28 @@ impl Layout {
             legend,
         }
     }
+}
+
+/// The upper ends of the rows of panels, from `begin` on, and of one row more. `below` is the space below a row.
+fn tops(
+    sheet: &Sheet,
+    print: &Print,
+    columns: usize,
+    [width, height, below]: [f64; 3],
+    begin: f64,
+) -> Vec<f64> {
+    let count = sheet.panels.len().max(1);
+    let (mut y, mut tops) = (begin, Vec::new());
+    for row in 0..=(count / columns) {
+        let panels = sheet.panels.iter().skip(row * columns).take(columns);
+        let titles = panels.map(|panel| title_of(panel, sheet, print, width).len());
+        let titles = titles.max().unwrap_or(0);
+        let is_close = sheet.shared_axes && row > 0 && titles > 0;
+        y += (height_of(titles, LABEL) + 3.0).max(GAP) + if is_close { ABOVE } else { 0.0 };
+        tops.push(y);
+        y += height + below;
+    }
+    tops
 }
 
 /// The number of entries of a legend that fit beside each other into this width.
