@@ -1,5 +1,6 @@
 //! `sandbox reproduce`: studies of the paper's tables and figures, and four rows of Table 1 within their bands.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::sync::Mutex;
 
@@ -8,9 +9,11 @@ use sandbox::lab::reproduce::{
     reproduce, table1_rows,
 };
 use sandbox::lab::sweep::{Gathered, Study};
+use sandbox::output::plot::text_width;
 use sandbox::runs::case::RunResult;
 use sandbox::runs::job::{self, Job, Listener, Progress};
 use sandbox::runs::store::Store;
+use sandbox::scenario::measurements::Snapshot;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -188,6 +191,152 @@ fn result(metrics: &Value) -> RunResult {
         "clamped_speeds": 0, "displaced_agents": 0, "evacuated": 0, "remaining": 0, "wall_secs": 1.0,
     });
     serde_json::from_value(result).unwrap()
+}
+
+/// A rectangle: left, top, right and bottom.
+type Extent = [f64; 4];
+
+fn overlap(a: Extent, b: Extent) -> bool {
+    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}
+
+fn attribute<'a>(tag: &'a str, name: &str) -> &'a str {
+    let (_, value) = tag.split_once(&format!(" {name}=\"")).unwrap_or_default();
+    value.split('"').next().unwrap()
+}
+
+/// The texts of an SVG with their extents: from the ascenders to the descenders of the font.
+fn texts(svg: &str) -> Vec<(String, Extent)> {
+    let tags = svg.split("<text").skip(1);
+    let texts = tags.map(|tag| {
+        let (tag, content) = tag.split_once('>').unwrap();
+        let content = content.split("</text>").next().unwrap().trim().to_owned();
+        let [x, y, em] =
+            ["x", "y", "font-size"].map(|name| attribute(tag, name).parse::<f64>().unwrap());
+        let width = text_width(&content, em);
+        let begin = match attribute(tag, "text-anchor") {
+            "middle" => -0.5 * width,
+            "end" => -width,
+            _ => 0.0,
+        };
+        let baseline = match attribute(tag, "dy") {
+            "0.76em" => 0.76 * em,
+            "0.5ex" => 0.27 * em,
+            other => panic!("{other}"),
+        };
+        let [left, right] = [begin, begin + width];
+        let [top, bottom] = [baseline - 0.76 * em, baseline + 0.24 * em];
+        let extent = match attribute(tag, "transform") {
+            "" => [x + left, y + top, x + right, y + bottom],
+            turned => {
+                assert!(turned.starts_with("rotate(270"), "{turned}");
+                [x + top, y - right, x + bottom, y - left]
+            }
+        };
+        (content, extent)
+    });
+    texts.filter(|(content, _)| !content.is_empty()).collect()
+}
+
+/// The frames of panels and of color bars: closed black lines of four corners.
+fn frames(svg: &str) -> Vec<Extent> {
+    let tags = svg.split("<polyline").skip(1);
+    let tags = tags.filter(|tag| attribute(tag, "stroke") == "#000000");
+    let points = tags.map(|tag| attribute(tag.split('>').next().unwrap(), "points"));
+    let corners = points.map(|points| -> Vec<[f64; 2]> {
+        let pairs = points
+            .split_whitespace()
+            .map(|pair| pair.split_once(',').unwrap());
+        pairs
+            .map(|(x, y)| [x, y].map(|one| one.parse().unwrap()))
+            .collect()
+    });
+    let closed = corners.filter(|corners| corners.len() == 5 && corners[0] == corners[4]);
+    let extents = closed.map(|c| {
+        [
+            c[0][0].min(c[2][0]),
+            c[0][1].min(c[2][1]),
+            c[0][0].max(c[2][0]),
+            c[0][1].max(c[2][1]),
+        ]
+    });
+    extents.collect()
+}
+
+/// The SVG of a figure of snapshots, with one agent in each of them.
+fn figure_of_one_agent(name: &str) -> String {
+    let (folder, store) = store();
+    let product = product(name);
+    let studies = product.studies(1).unwrap();
+    let one = json!({"time_secs": 15.0, "x": [15.0], "y": [10.0], "radius": [0.24], "speed": [1.0], "density": [4.0]});
+    let times = [15.0, 45.0, 150.0, 150.3, 151.0, 152.0, 153.0, 154.0, 156.0];
+    let data: BTreeMap<String, Value> = times
+        .map(|time| (Snapshot::name(time), one.clone()))
+        .into_iter()
+        .collect();
+    let jobs: Vec<Job> = studies[0]
+        .cells
+        .iter()
+        .map(|cell| {
+            let mut kept = result(&json!({}));
+            kept.summary.data = data.clone();
+            let work = move |_: Progress| Ok::<_, String>(kept.clone());
+            Job::new(cell.to_string(), cell.case.key.clone(), 1.0, work)
+        })
+        .collect();
+    job::run(&jobs, &store, None, &()).unwrap();
+    reproduce(&[product], 1, &store, &()).unwrap();
+    fs::read_to_string(folder.path().join(format!("{name}.svg"))).unwrap()
+}
+
+#[test]
+fn titles_in_figures_overlap_neither_each_other_nor_a_panel() {
+    for (name, panels) in [
+        ("fig5", 24),
+        ("fig6", 6),
+        ("fig7", 36),
+        ("fig8", 2),
+        ("fig9", 12),
+        ("fig10", 2),
+    ] {
+        let svg = figure_of_one_agent(name);
+        let (texts, frames) = (texts(&svg), frames(&svg));
+        assert_eq!(frames.len(), panels + 1, "{name}");
+        for (k, (content, extent)) in texts.iter().enumerate() {
+            for (other, covered) in &texts[..k] {
+                assert!(
+                    !overlap(*extent, *covered),
+                    "{name}: {content:?}, {other:?}"
+                );
+            }
+            for &frame in &frames {
+                assert!(
+                    !overlap(*extent, frame),
+                    "{name}: {content:?} {extent:?} {frame:?}"
+                );
+            }
+        }
+        // A title above a panel is nearer to it than to the panel above it.
+        let titles = texts.iter().filter(|(content, _)| content.starts_with('('));
+        for (title, [left, top, right, bottom]) in titles {
+            let middle = 0.5 * (left + right);
+            let column = frames
+                .iter()
+                .filter(|frame| frame[0] < middle && middle < frame[2]);
+            let gaps = column.map(|frame| [top - frame[3], frame[1] - bottom]);
+            let gaps: Vec<[f64; 2]> = gaps.collect();
+            if gaps.is_empty() {
+                continue; // a title beside a row
+            }
+            let least = |k: usize| {
+                gaps.iter()
+                    .map(|gap| gap[k])
+                    .filter(|gap| *gap >= 0.0)
+                    .fold(f64::INFINITY, f64::min)
+            };
+            assert!(least(1) < least(0), "{name}: {title}: {gaps:?}");
+        }
+    }
 }
 
 /// Counts the runs that begin and that are kept.
