@@ -1,5 +1,5 @@
-//! docs/paper.md: its table has every equation, section, table and figure of the paper; the functions that it names are in
-//! the files that it names; its code is that of the files; its commands run; its numbers follow from each other.
+//! docs/paper.md: its tables have every equation, section, table and figure of the paper; the functions that it names
+//! are in the files that it names; its code is that of the files; its commands run; its numbers follow from each other.
 
 use std::fs;
 use std::path::{Path, PathBuf};

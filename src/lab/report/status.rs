@@ -76,11 +76,12 @@ pub fn status(profiles: &[&str], is_changed: bool) -> Result<Vec<Block>, LabErro
     Ok(vec![
         Block::heading("Verification and validation"),
         Block::text(format!(
-            "`sandbox validate` compares flows, densities and speeds with published experiments, to most of which the \
-             calibrated profiles were fitted; values that were held out come first. Tolerances: 6 % for flows, 10 % for \
-             densities and speeds. `sandbox verify` runs small cases with known answers. They follow the tests of RiMEA, \
-             ISO 20414 and NIST that a flat plan allows, but were not checked against the texts of these guidelines. \
-             docs/validation.md and docs/verification.md list all cases and the known misses. In version {version}:"
+            "Values that were held out come first: nothing was fitted to them. `sandbox validate` compares flows, \
+             densities and speeds with published experiments, to most of which the calibrated profiles were fitted. \
+             Tolerances: 6 % for flows, 10 % for densities and speeds. `sandbox verify` runs small cases with known \
+             answers. They follow the tests of RiMEA, ISO 20414 and NIST that a flat plan allows, but were not checked \
+             against the texts of these guidelines. docs/validation.md and docs/verification.md list all cases and the \
+             known misses. In version {version}:"
         )),
         Block::List(items),
     ])
