@@ -1,5 +1,6 @@
 //! The numbers with which the README, the pages and reports say how real the profiles are, and how many rows of the
-//! paper's Table 1 are met, are those of the data: docs/held_out.json, docs/validation.json, docs/tables/reproduction.md.
+//! paper's Table 1 are met, are those of the data: docs/held_out.json, docs/validation.json and
+//! docs/tables/reproduction.md.
 
 use std::fs;
 use std::path::{Path, PathBuf};
