@@ -109,16 +109,19 @@ pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
             ));
         }
     }
-    for queue in &run.longest_queues {
+    for (k, queue) in run.longest_queues.iter().enumerate() {
         let before = &queue.before;
         facts.push(Fact::new(
             &format!("longest queue before {before}"),
             format!("{} people at {:.0} s", queue.agents, queue.at_secs),
-            format!(
-                "most people at one time whose way leads there and who are slower than {SLOW} of their preferred \
-                 speed, from there up to the first gap of {GAP} m along their ways, without those who have just \
-                 started; of a queue with a line, those who have joined it"
-            ),
+            match k {
+                0 => format!(
+                    "most people at one time whose way leads there and who are slower than {SLOW} of their preferred \
+                     speed, from there up to the first gap of {GAP} m along their ways, without those who have just \
+                     started; of a queue with a line, those who have joined it"
+                ),
+                _ => "the same".to_owned(),
+            },
         ));
         if let Some(outside) = &queue.outside {
             facts.push(Fact::new(
