@@ -84,9 +84,8 @@ fn checks_of_the_built_in_suites_name_all_runs_and_no_unknown_quantities() {
         assert_eq!(suite.cases.len(), count, "{name}");
         let chosen = Chosen {
             cases: suite.cases.iter().collect(),
-            profiles: &[],
-            seeds: None,
             data: Some(data.path()),
+            ..Chosen::default()
         };
         let planned = suite.planned(&chosen).map_err(|error| error.to_string());
         let planned = planned.unwrap();
@@ -245,9 +244,7 @@ fn a_suite_with_changed_values_is_planned_or_refused() {
         let suite = Suite::read(&path).map_err(|error| error.to_string())?;
         let chosen = Chosen {
             cases: suite.cases.iter().collect(),
-            profiles: &[],
-            seeds: None,
-            data: None,
+            ..Chosen::default()
         };
         let planned = suite.planned(&chosen);
         planned.map(|_| ()).map_err(|error| error.to_string())

@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::common::program::{refused, run, stderr, text};
-use sandbox::lab::suite::{Case, Expected, Finding, Judgment, Report, Suite};
+use sandbox::lab::suite::{Case, Changed, Expected, Finding, Judgment, Report, Suite};
 
 fn verification() -> Suite {
     Suite::built_in("verification").unwrap()
@@ -56,6 +56,7 @@ fn report<'a>(suite: &'a Suite, case: &'a Case, value: f64) -> Report<'a> {
     let at_most = Expected::Between([f64::NEG_INFINITY, 10.0]);
     Report {
         skipped: Vec::new(),
+        changed: Changed::default(),
         suite,
         profiles: vec!["sph".to_owned()],
         findings: vec![Finding {

@@ -1,6 +1,6 @@
 //! Options that several commands have, as typed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 use clap::{ArgGroup, Args};
@@ -12,7 +12,10 @@ use super::values::{
 };
 use crate::lab::estimate::{Bound, Limits, Request, Sampling, Wanted};
 use crate::output::plot::Print;
-use crate::scenario::Preset;
+use crate::runs::outputs::Outputs;
+use crate::runs::store::Store;
+use crate::scenario::quote::shown;
+use crate::scenario::{Preset, Setting};
 
 /// Options that change a scenario and how it is computed.
 #[derive(Args)]
@@ -22,9 +25,8 @@ pub struct SceneOptions {
     /// `sf->sph`, or write sf-sph)
     #[arg(long, value_name = "NAME")]
     pub profile: Option<String>,
-    /// Seed of all random numbers
-    #[arg(long, allow_negative_numbers = true, value_parser = seed)]
-    pub seed: Option<u64>,
+    #[command(flatten)]
+    pub changes: ChangeOptions,
     /// Numerical settings: the paper's, cheaper ones, or more accurate ones (see docs/accuracy.md)
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Preset::names()))]
     pub preset: Option<String>,
@@ -35,11 +37,47 @@ pub struct SceneOptions {
     /// A floor plan that replaces the scenario's walkable area and obstacles: WKT, GeoJSON or JuPedSim XML
     #[arg(long, value_name = "FILE")]
     pub geometry: Option<PathBuf>,
+    #[command(flatten)]
+    pub program: ProgramOptions,
+}
+
+/// The random numbers and the settings of scenarios.
+#[derive(Args)]
+pub struct ChangeOptions {
+    /// Seed of all random numbers
+    #[arg(long, allow_negative_numbers = true, value_parser = seed)]
+    pub seed: Option<u64>,
     /// Change a setting of the scenario (see `sandbox list --settings`); may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    #[command(flatten)]
-    pub program: ProgramOptions,
+}
+
+impl ChangeOptions {
+    /// The settings of `--set`.
+    pub fn settings(&self) -> Result<Vec<Setting>, Failure> {
+        self.set.iter().map(|text| setting(text)).collect()
+    }
+}
+
+/// The setting of `--set`.
+pub fn setting(text: &str) -> Result<Setting, Failure> {
+    text.parse()
+        .map_err(|error| Failure::Input(format!("--set {}: {error}", shown(text))))
+}
+
+/// What becomes of existing files in the folder for the results of many runs.
+#[derive(Args)]
+pub struct ReplaceOptions {
+    /// Replace existing files with the results' names in a folder that does not belong to a study
+    #[arg(long)]
+    pub force: bool,
+}
+
+impl ReplaceOptions {
+    /// The outputs of a command whose results are in `folder`.
+    pub fn outputs(&self, folder: &Path) -> Outputs {
+        Outputs::new(self.force || Store::at(folder).is_begun())
+    }
 }
 
 /// Options of computing and reporting.

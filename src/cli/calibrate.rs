@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::arguments::{PrintOptions, use_threads};
+use super::arguments::{PrintOptions, ReplaceOptions, use_threads};
 use super::failure::Failure;
 use super::terminal::tell;
 use super::watch::Watch;
@@ -13,7 +13,7 @@ use crate::lab::calibrate::{Calibration, FILES, Target, run as search};
 use crate::lab::machine::main_memory;
 use crate::lab::sweep::Shard;
 use crate::output::table::Table;
-use crate::runs::outputs::{Manner, Outputs};
+use crate::runs::outputs::Manner;
 use crate::runs::store::Store;
 
 /// An example of a study, and of commands.
@@ -56,9 +56,8 @@ pub struct CalibrateOptions {
     pub threads: Option<usize>,
     #[command(flatten)]
     pub print: PrintOptions,
-    /// Replace existing files with the results' names in a folder that does not belong to a study
-    #[arg(long)]
-    pub force: bool,
+    #[command(flatten)]
+    pub replace: ReplaceOptions,
     /// Print one JSON object instead of text
     #[arg(long)]
     pub json: bool,
@@ -77,7 +76,7 @@ pub fn run(options: &CalibrateOptions) -> Result<(), Failure> {
     }
     let folder = options.out.clone();
     let folder = folder.unwrap_or_else(|| PathBuf::from(&calibration.name));
-    let mut outputs = Outputs::new(options.force || Store::at(&folder).is_begun());
+    let mut outputs = options.replace.outputs(&folder);
     if options.file.exists() {
         outputs.reads("the study", &options.file);
     }

@@ -108,13 +108,17 @@ pub enum Command {
             "{}Example: sandbox verify --only 12 --only iso6 --seeds 3",
             suite::about(suite::VERIFICATION)
         ),
-        mut_arg("out", |out| out.required(false).default_value("verification"))
+        mut_arg("out", |out| out.required(false).default_value("verification")),
+        mut_arg("seed", |seed| seed.help(suite::FIRST_SEED)),
+        mut_arg("set", |set| set.help(suite::EVERY_SCENE))
     )]
     Verify(suite::VerifyOptions),
     /// Compare scenes of experiments with what was measured there: tables and pictures
     #[command(
         after_help = format!("{}Example: sandbox validate door --seeds 3", suite::about(suite::VALIDATION)),
-        mut_arg("out", |out| out.required(false).default_value("validation"))
+        mut_arg("out", |out| out.required(false).default_value("validation")),
+        mut_arg("seed", |seed| seed.help(suite::FIRST_SEED)),
+        mut_arg("set", |set| set.help(suite::EVERY_SCENE))
     )]
     Validate(suite::ValidateOptions),
     /// Search for parameters with which scenes come close to what was measured there

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use super::arguments::{OutputOptions, ProgramOptions, ResumeOptions, RunOptions, use_threads};
+use super::arguments::{
+    OutputOptions, ProgramOptions, ResumeOptions, RunOptions, setting, use_threads,
+};
 use super::checkpoint::Checkpoints;
 use super::failure::Failure;
-use super::inputs::{scenario, setting};
+use super::inputs::scenario;
 use super::interrupt::Interrupt;
 use super::output::{check, recordings, trajectories};
 use super::terminal::{talk, tell};

@@ -24,7 +24,7 @@ use crate::runs::store::Store;
 pub const EXAMPLES: &str = "\
 Examples:
   sandbox estimate evacuation --error flow_per_s=1% --error density_mean_15s=0.5%
-  sandbox estimate scenarios/office.json --error t95_secs=3% --profile walk+sph --out results
+  sandbox estimate scenarios/office.json --error t95_secs=3% --out results
   sandbox estimate evacuation --profile 'sf->sph' --error flow_per_s=0.05 --confidence 99 --most-minutes 5
   sandbox estimate evacuation --bound time_secs=95%";
 

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use super::arguments::SceneOptions;
+use super::arguments::{SceneOptions, setting};
 use super::failure::Failure;
 use super::terminal::talk;
 use crate::lab::machine::main_memory;
@@ -58,7 +58,7 @@ pub fn settings(
 ) -> Result<Vec<Setting>, Failure> {
     let (until_flag, until) =
         until.map_or(("", None), |(flag, secs)| (flag, Some(secs.to_string())));
-    let seed = scene.seed.map(|seed| seed.to_string());
+    let seed = scene.changes.seed.map(|seed| seed.to_string());
     let flags = [
         ("--profile", "profile", scene.profile.clone()),
         ("--preset", "preset", scene.preset.clone()),
@@ -66,11 +66,7 @@ pub fn settings(
         (until_flag, "duration_secs", until),
         ("--time-step", "time_step_secs", scene.time_step.clone()),
     ];
-    let typed: Vec<Setting> = scene
-        .set
-        .iter()
-        .map(|text| setting(text))
-        .collect::<Result<_, _>>()?;
+    let typed = scene.changes.settings()?;
     let mut settings = Vec::new();
     let mut last = None;
     for (flag, key, value) in flags {
@@ -106,12 +102,6 @@ fn floor_plan(path: &Path) -> Result<FloorPlan, Failure> {
         talk(&format!("note: --geometry {}: {note}", path.display()));
     }
     Ok(plan)
-}
-
-/// The setting of `--set`.
-pub fn setting(text: &str) -> Result<Setting, Failure> {
-    text.parse()
-        .map_err(|error| Failure::Input(format!("--set {}: {error}", shown(text))))
 }
 
 /// Reads trajectories.

@@ -26,7 +26,7 @@ use crate::scenario::{Scenario, read_text};
 pub const EXAMPLES: &str = "\
 Examples:
   sandbox report scenarios/office.json -o office.pdf
-  sandbox report scenarios/office.json --profile steer+sph --at 30 --at 60 -o office.html
+  sandbox report scenarios/office.json --at 30 --at 60 -o office.html
   sandbox sweep study.json && sandbox report study.json -o study.pdf";
 
 /// Keys that only studies have.
@@ -240,7 +240,7 @@ fn complete(scenario: &mut Scenario) {
 /// The scenario and its settings, as typed into a shell.
 fn words(options: &ReportOptions) -> Vec<String> {
     let scene = &options.scene;
-    let seed = scene.seed.map(|seed| seed.to_string());
+    let seed = scene.changes.seed.map(|seed| seed.to_string());
     let until = options.until.map(|until| until.to_string());
     let geometry = scene.geometry.as_ref();
     let geometry = geometry.map(|path| path.display().to_string());
@@ -255,7 +255,7 @@ fn words(options: &ReportOptions) -> Vec<String> {
     let given = given
         .into_iter()
         .filter_map(|(name, value)| Some((name, value?)));
-    let set = scene.set.iter().map(|value| ("--set", value.clone()));
+    let set = scene.changes.set.iter().map(|value| ("--set", value.clone()));
     let words = given
         .chain(set)
         .map(|(name, value)| format!("{name} {}", quoted(&value)));

@@ -7,19 +7,24 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
+use super::arguments::{ChangeOptions, ReplaceOptions};
 use super::failure::Failure;
 use super::terminal::{say_text, talk};
 use super::update::CaseOptions;
 use super::watch::Watch;
-use crate::lab::suite::{Chosen, Judged, Status, Suite};
-use crate::runs::outputs::write_whole;
+use crate::lab::suite::{Chosen, Judged, Planned, Status, Suite};
+use crate::runs::outputs::{Manner, write_whole};
 use crate::runs::store::Store;
-use crate::scenario::catalog;
 use crate::scenario::quote::shown;
+use crate::scenario::{Setting, catalog};
 
 /// The suites that are built into the program.
 pub const VERIFICATION: &str = "verification";
 pub const VALIDATION: &str = "validation";
+
+/// What `--seed` and `--set` mean for suites.
+pub const FIRST_SEED: &str = "First seed of every run [default: the suite's seeds]";
+pub const EVERY_SCENE: &str = "Change a setting of every scene (see `sandbox list --settings`); may be repeated";
 
 #[derive(Args)]
 pub struct VerifyOptions {
@@ -58,7 +63,11 @@ pub struct SuiteOptions {
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub seeds: Option<u64>,
     #[command(flatten)]
+    pub changes: ChangeOptions,
+    #[command(flatten)]
     pub cases: CaseOptions,
+    #[command(flatten)]
+    pub replace: ReplaceOptions,
 }
 
 pub fn verify(options: &VerifyOptions) -> Result<(), Failure> {
@@ -66,16 +75,31 @@ pub fn verify(options: &VerifyOptions) -> Result<(), Failure> {
         Some(file) => Suite::read(file)?,
         None => Suite::built_in(VERIFICATION)?,
     };
-    let names = ("--only ", options.only.as_slice());
-    judge(&suite, Judged::Seeds, names, &options.suite)
+    let asked = Asked {
+        suite: &suite,
+        file: options.file.as_deref(),
+        judged: Judged::Seeds,
+        names: ("--only ", &options.only),
+    };
+    judge(&asked, &options.suite)
 }
 
 pub fn validate(options: &ValidateOptions) -> Result<(), Failure> {
-    let (suite, names) = match options.scene.split_first() {
-        Some((file, names)) if file.ends_with(".json") => (Suite::read(Path::new(file))?, names),
-        _ => (Suite::built_in(VALIDATION)?, options.scene.as_slice()),
+    let (file, names) = match options.scene.split_first() {
+        Some((file, names)) if file.ends_with(".json") => (Some(Path::new(file)), names),
+        _ => (None, options.scene.as_slice()),
     };
-    judge(&suite, Judged::Means, ("", names), &options.suite)
+    let suite = match file {
+        Some(file) => Suite::read(file)?,
+        None => Suite::built_in(VALIDATION)?,
+    };
+    let asked = Asked {
+        suite: &suite,
+        file,
+        judged: Judged::Means,
+        names: ("", names),
+    };
+    judge(&asked, &options.suite)
 }
 
 /// All cases of a built-in suite, each with a line about it.
@@ -89,25 +113,27 @@ pub fn about(suite: &str) -> String {
     lines.collect()
 }
 
-/// Runs the cases with these names, all without names. `option` begins messages about a name.
-fn judge(
-    suite: &Suite,
+/// What a command asks for.
+struct Asked<'a> {
+    suite: &'a Suite,
+    /// The file of the suite, if it is not built in.
+    file: Option<&'a Path>,
     judged: Judged,
-    (option, names): (&str, &[String]),
-    options: &SuiteOptions,
-) -> Result<(), Failure> {
+    /// The names of cases, all without names. The first text begins messages about a name.
+    names: (&'a str, &'a [String]),
+}
+
+/// Runs the cases that are asked for.
+fn judge(asked: &Asked, options: &SuiteOptions) -> Result<(), Failure> {
+    let suite = asked.suite;
+    let (option, names) = asked.names;
     let cases = suite.chosen(names).map_err(|name| {
         let known = suite.cases.iter().map(|case| shown(&case.name));
         let (name, known) = (shown(&name), known.collect::<Vec<_>>().join(", "));
         Failure::Input(format!("{option}{name}: no such case; there are {known}"))
     })?;
-    let update = options.cases.document.update.as_deref();
-    let status = update.and_then(Status::beside);
-    let is_whole = options.profile.is_empty();
-    if update.is_some() && !(names.is_empty() && (is_whole || status.is_some())) {
-        let reason = "--update needs all cases and profiles; name none";
-        return Err(Failure::Input(reason.to_owned()));
-    }
+    let settings = settings(options)?;
+    let status = status(asked, options)?;
     let mut given = options.profile.iter().enumerate();
     if let Some((_, twice)) = given.find(|(k, name)| options.profile[..*k].contains(name)) {
         let reason = format!("--profile {twice}: given twice; give it once");
@@ -126,13 +152,16 @@ fn judge(
         cases,
         profiles: &options.profile,
         seeds: options.seeds,
+        first_seed: options.changes.seed,
+        settings: &settings,
         data: data.as_deref(),
     })?;
+    check_outputs(&planned, asked, options)?;
     let store = Store::open(&options.cases.out)?;
-    let report = planned.run(judged, &store, &Watch::new())?;
+    let report = planned.run(asked.judged, &store, &Watch::new())?;
     let text = report.markdown();
     let said = say_text(&format!("{text}\n"));
-    if is_whole {
+    if options.profile.is_empty() {
         options.cases.document.put([(&suite.name, &text)])?;
     }
     if let Some(file) = status
@@ -151,6 +180,57 @@ fn judge(
         none if none.is_empty() => Ok(()),
         failures => Err(Failure::Output(failures.join("\n"))),
     }
+}
+
+/// The settings of `--set`. Profiles and seeds have options of their own.
+fn settings(options: &SuiteOptions) -> Result<Vec<Setting>, Failure> {
+    let settings = options.changes.settings()?;
+    for (key, option) in [("profile", "--profile NAME"), ("seed", "--seed N")] {
+        if let Some(setting) = settings.iter().find(|setting| setting.path()[0] == key) {
+            return Err(Failure::Input(format!("{setting}: give {option} instead")));
+        }
+    }
+    Ok(settings)
+}
+
+/// The status file beside the document of `--update`, if there is one. Only results of the whole suite, as it is, belong
+/// into a document, and of all profiles unless there is a status.
+fn status(asked: &Asked, options: &SuiteOptions) -> Result<Option<PathBuf>, Failure> {
+    let Some(document) = options.cases.document.update.as_deref() else {
+        return Ok(None);
+    };
+    let changes = &options.changes;
+    if changes.seed.is_some() || !changes.set.is_empty() {
+        let reason = "--update needs the suite as it is; give no --seed and no --set";
+        return Err(Failure::Input(reason.to_owned()));
+    }
+    let status = Status::beside(document);
+    let (_, names) = asked.names;
+    match names.is_empty() && (options.profile.is_empty() || status.is_some()) {
+        true => Ok(status),
+        false => {
+            let reason = "--update needs all cases and profiles; name none";
+            Err(Failure::Input(reason.to_owned()))
+        }
+    }
+}
+
+/// Rejects results that cannot be written or would replace an input. In a folder that does not belong to a study,
+/// existing files with the results' names are replaced only with --force.
+fn check_outputs(planned: &Planned, asked: &Asked, options: &SuiteOptions) -> Result<(), Failure> {
+    let folder = &options.cases.out;
+    let mut outputs = options.replace.outputs(folder);
+    if let Some(file) = asked.file {
+        outputs.reads("the suite", file);
+    }
+    for path in planned.study.inputs() {
+        outputs.reads("the suite's", path);
+    }
+    for file in planned.files(asked.judged) {
+        // Another process may run the same suite at the same time, so do not create trial files.
+        outputs.writes("--out", &folder.join(file), Manner::Beside);
+    }
+    Ok(outputs.check()?)
 }
 
 fn unusable(folder: &Path, why: impl std::fmt::Display) -> Failure {

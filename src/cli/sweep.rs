@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::arguments::{ErrorOptions, PrintOptions, use_threads};
+use super::arguments::{ErrorOptions, PrintOptions, ReplaceOptions, use_threads};
 use super::estimate::all_reached;
 use super::failure::Failure;
 use super::terminal::{talk, tell};
@@ -64,9 +64,8 @@ pub struct SweepOptions {
     /// Number of cells to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = super::values::threads)]
     pub threads: Option<usize>,
-    /// Replace existing files with the results' names in a folder that does not belong to a study
-    #[arg(long)]
-    pub force: bool,
+    #[command(flatten)]
+    pub replace: ReplaceOptions,
     /// Print one JSON object instead of text
     #[arg(long)]
     pub json: bool,
@@ -127,8 +126,7 @@ fn estimate(study: &Study, folder: &Path, options: &SweepOptions) -> Result<(), 
         ));
     }
     let questions = Questions::new(study, &options.error.request())?;
-    let is_begun = Store::at(folder).is_begun();
-    let mut outputs = inputs(study, options, is_begun);
+    let mut outputs = inputs(study, options, folder);
     for file in questions.files() {
         outputs.writes("--out", &folder.join(file), Manner::Beside);
     }
@@ -144,9 +142,9 @@ fn estimate(study: &Study, folder: &Path, options: &SweepOptions) -> Result<(), 
     all_reached(&answers)
 }
 
-/// The files that the study reads.
-fn inputs(study: &Study, options: &SweepOptions, may_replace: bool) -> Outputs {
-    let mut outputs = Outputs::new(options.force || may_replace);
+/// The files that the study reads, before its results in `folder`.
+fn inputs(study: &Study, options: &SweepOptions, folder: &Path) -> Outputs {
+    let mut outputs = options.replace.outputs(folder);
     if options.file.exists() {
         outputs.reads("the study", &options.file);
     }
@@ -159,7 +157,7 @@ fn inputs(study: &Study, options: &SweepOptions, may_replace: bool) -> Outputs {
 /// Rejects results that cannot be written or would replace an input. In a folder that does not belong to a study,
 /// existing files with the results' names are replaced only with --force.
 fn check_outputs(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Failure> {
-    let mut outputs = inputs(study, options, store.is_begun());
+    let mut outputs = inputs(study, options, store.folder());
     for file in study.files().into_iter().chain(study.curve_files()) {
         // Another process may start the same study at the same time, so do not create trial files.
         outputs.writes("--out", &store.folder().join(file), Manner::Beside);

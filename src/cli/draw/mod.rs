@@ -195,10 +195,10 @@ fn simulate(
 fn refuse_settings(options: &DrawOptions, scene: &SceneOptions) -> Result<(), Failure> {
     let given = [
         ("--profile", scene.profile.is_some()),
-        ("--seed", scene.seed.is_some()),
+        ("--seed", scene.changes.seed.is_some()),
         ("--preset", scene.preset.is_some()),
         ("--time-step", scene.time_step.is_some()),
-        ("--set", !scene.set.is_empty()),
+        ("--set", !scene.changes.set.is_empty()),
         ("--paths", !options.paths.is_empty()),
     ];
     match given.iter().find(|(_, is_given)| *is_given) {

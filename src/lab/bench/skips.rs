@@ -148,7 +148,7 @@ struct Saving {
     scenario: &'static str,
     profile: String,
     skip: &'static str,
-    /// With the skip, as shipped.
+    /// With the skip.
     with_skip_ms: Range,
     /// With the skip undone; `None` if there is nothing to skip.
     without_skip_ms: Option<Range>,
@@ -189,7 +189,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     })
 }
 
-/// The times of a scene as shipped, and with each skip undone, if there is something to skip.
+/// The times of a scene, and with each skip undone, if there is something to skip.
 fn measure(started: &Started, plan: &Plan) -> Result<Vec<Saving>, LabError> {
     let start = &started.simulation;
     let mut with = Vec::new();

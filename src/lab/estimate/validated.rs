@@ -1,6 +1,5 @@
 //! What is known of the error of the model: the scenes of the built-in validation that have the same measurements.
 
-use std::collections::BTreeMap;
 use std::mem::{Discriminant, discriminant};
 
 use serde::Serialize;
@@ -47,7 +46,7 @@ impl Validated {
         let changes = Changes {
             profiles,
             seeds: Some(1),
-            data: BTreeMap::new(),
+            ..Changes::default()
         };
         let study = suite.study(&changes)?;
         let cells = study.cells.iter();

@@ -4,6 +4,7 @@
 //! All of it is data, the key `cases` of the study's file. A [`Report`] has the judgments of all cases, profiles and
 //! seeds.
 
+mod changed;
 mod check;
 mod counts;
 mod data;
@@ -18,6 +19,7 @@ mod report;
 mod run;
 mod status;
 
+pub use changed::Changed;
 pub use check::{Judgment, Runs, in_tolerances};
 pub use file::Suite;
 pub use keys::{Case, Check, Expected};

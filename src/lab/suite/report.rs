@@ -2,6 +2,7 @@
 
 use serde_json::json;
 
+use super::changed::Changed;
 use super::check::Judgment;
 use super::counts::is_fitted;
 use super::file::Suite;
@@ -53,6 +54,8 @@ pub struct Report<'a> {
     pub findings: Vec<Finding<'a>>,
     /// Cases without data, which neither pass nor fail.
     pub skipped: Vec<Skipped<'a>>,
+    /// What is not as in the suite.
+    pub changed: Changed,
 }
 
 /// A check of a case, with all profiles and seeds.
@@ -166,8 +169,16 @@ impl<'a> Report<'a> {
         cases
     }
 
-    /// All results as Markdown: a summary, a table, and the reasons of the misses.
+    /// All results as Markdown: what was changed, a summary, a table, and the reasons of the misses.
     pub fn markdown(&self) -> String {
+        let changed = match self.changed.is_anything() {
+            true => format!("**Not the suite as it is**: {}.\n\n", self.changed.text()),
+            false => String::new(),
+        };
+        changed + &self.results()
+    }
+
+    fn results(&self) -> String {
         let lines = self.skipped.iter();
         let lines = lines.map(|one| {
             format!(
@@ -320,6 +331,11 @@ impl<'a> Report<'a> {
             .column("least", |(_, check)| bound(check, 0))
             .column("most", |(_, check)| bound(check, 1))
             .column("passed", |(_, check)| check.is_passed());
+        let changed = self.changed.text();
+        let csv = match self.changed.is_anything() {
+            true => csv.column("changed", |_| changed.as_str()),
+            false => csv,
+        };
         store.write(&name("csv"), &csv.table().csv()?)?;
         let entry = |finding: &Finding| {
             json!({
@@ -329,7 +345,11 @@ impl<'a> Report<'a> {
         };
         let skipped = self.skipped.iter();
         let skipped = skipped.map(|one| json!({"case": one.case.name, "skipped": one.why}));
-        let entries: Vec<_> = self.findings.iter().map(entry).chain(skipped).collect();
+        let mut entries: Vec<_> = self.findings.iter().map(entry).chain(skipped).collect();
+        if self.changed.is_anything() {
+            let entries = entries.iter_mut();
+            entries.for_each(|entry| entry["changed"] = json!(self.changed));
+        }
         store.write(&name("json"), format!("{:#}\n", json!(entries)).as_bytes())?;
         Ok(())
     }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use super::changed::Changed;
 use super::check::{Judgment, Runs};
 use super::file::Suite;
 use super::keys::{Case, Expected};
@@ -13,12 +14,15 @@ use crate::lab::error::LabError;
 use crate::lab::gallery::{distinct, save};
 use crate::lab::jobs::{read, results};
 use crate::lab::sweep::{Cell, Changes, Study, StudyError};
+use crate::output::plot::Print;
 use crate::runs::case::RunResult;
 use crate::runs::job::Listener;
 use crate::runs::store::Store;
 use crate::runs::summary::Summary;
+use crate::scenario::Setting;
 
 /// The part of a suite that is computed.
+#[derive(Default)]
 pub struct Chosen<'a> {
     /// The cases.
     pub cases: Vec<&'a Case>,
@@ -26,6 +30,10 @@ pub struct Chosen<'a> {
     pub profiles: &'a [String],
     /// The number of seeds; `None`: those of the study.
     pub seeds: Option<u64>,
+    /// The first seed; `None`: that of the study.
+    pub first_seed: Option<u64>,
+    /// Settings of every run.
+    pub settings: &'a [Setting],
     /// The folder with the data.
     pub data: Option<&'a Path>,
 }
@@ -46,6 +54,8 @@ pub struct Planned<'a> {
     cases: Vec<&'a Case>,
     /// The cases whose data are missing.
     pub skipped: Vec<Skipped<'a>>,
+    /// What is not as in the suite.
+    changed: Changed,
     /// The labels of the runs that begin from data.
     data: BTreeSet<String>,
     /// The study.
@@ -62,6 +72,8 @@ impl Suite {
         let mut changes = Changes {
             profiles: chosen.profiles,
             seeds: chosen.seeds,
+            first_seed: chosen.first_seed,
+            settings: chosen.settings,
             data: BTreeMap::new(),
         };
         for &case in &chosen.cases {
@@ -93,10 +105,17 @@ impl Suite {
         if !cases.is_empty() {
             check_runs(self, &study)?;
         }
+        let seeds = study.cells.iter().map(|cell| cell.case.seed);
+        let seeds = seeds.filter(|_| chosen.first_seed.is_some());
+        let changed = Changed {
+            settings: chosen.settings.iter().map(Setting::brief).collect(),
+            seeds: distinct(seeds),
+        };
         Ok(Planned {
             suite: self,
             cases,
             skipped,
+            changed,
             data: changes.data.into_keys().map(|(run, _)| run).collect(),
             study,
         })
@@ -104,6 +123,22 @@ impl Suite {
 }
 
 impl<'a> Planned<'a> {
+    /// The names of the result files: tables, pictures of cases, and with means those of all results.
+    pub fn files(&self, judged: Judged) -> Vec<String> {
+        let tables = ["md", "csv", "json"].map(|end| format!("{}.{end}", self.suite.name));
+        let drawn = self.cases.iter().filter(|case| case.picture.is_some());
+        let drawn = drawn.map(|case| format!("{}.png", case.name));
+        let sheets: &[&str] = match judged {
+            Judged::Means => &["fundamental", "passages", "deviations"],
+            Judged::Seeds => &[],
+        };
+        let sheets = sheets.iter().flat_map(|name| {
+            let ends = Print::of_program().extensions();
+            ends.map(move |end| format!("{name}.{end}"))
+        });
+        tables.into_iter().chain(drawn).chain(sheets).collect()
+    }
+
     /// Computes the runs that are not in `store`, judges them, and writes tables and pictures.
     ///
     /// # Errors
@@ -159,6 +194,7 @@ impl<'a> Planned<'a> {
             profiles,
             findings,
             skipped: self.skipped,
+            changed: self.changed,
         };
         report.write(store)?;
         if judged == Judged::Means {

@@ -41,6 +41,9 @@ pub(super) struct File {
     _reasons: IgnoredAny,
     #[serde(rename = "cases")]
     _cases: IgnoredAny,
+    /// Settings that a command gives every cell.
+    #[serde(skip)]
+    given: Vec<Setting>,
 }
 
 /// A file that is not part of the program and that the scenarios of a run read: most often the trajectories from which
@@ -70,6 +73,10 @@ pub struct Changes<'a> {
     pub profiles: &'a [String],
     /// The number of seeds in place of the file's.
     pub seeds: Option<u64>,
+    /// The first seed in place of the file's.
+    pub first_seed: Option<u64>,
+    /// Settings of every cell, which override those of the file.
+    pub settings: &'a [Setting],
     /// The paths of data files by the labels of their runs and their settings.
     pub data: BTreeMap<(String, String), PathBuf>,
 }
@@ -89,6 +96,11 @@ impl File {
     /// Applies the changes. Runs whose data are missing are left out.
     pub(super) fn change(&mut self, changes: &Changes) {
         self.seeds = changes.seeds.map(Seeds::Count).or(self.seeds.take());
+        if let Some(first) = changes.first_seed {
+            let seeds = self.seeds.as_ref().unwrap_or(&Seeds::Count(1));
+            self.seeds = Some(seeds.from(first));
+        }
+        self.given = changes.settings.to_vec();
         if !changes.profiles.is_empty() {
             let grid = &mut self.grid.0;
             match grid.iter_mut().find(|(key, _)| key == PROFILE) {
@@ -125,8 +137,8 @@ pub(super) struct Plan {
     /// The scenario of cells whose settings do not name one.
     scenario: Source,
     fixed: Vec<Choice>,
-    /// Measurements in addition to those of the scenario, as settings.
-    measurements: Vec<Setting>,
+    /// Measurements in addition to those of the scenario, as settings; then settings that a command gives every cell.
+    last: Vec<Setting>,
     /// The combinations of the list; a single empty one without a list.
     rows: Vec<Vec<Choice>>,
     /// The labels of these combinations.
@@ -170,7 +182,7 @@ impl Plan {
                 None => varied_scenario(&rows, &grid)?,
             },
             fixed,
-            measurements: measurements(&file.measurements)?,
+            last: measurements(&file.measurements)?,
             rows,
             labels,
             grid,
@@ -178,6 +190,8 @@ impl Plan {
             count: 0,
         };
         plan.refuse_repetitions()?;
+        plan.refuse_varied(&file.given)?;
+        plan.last.extend(file.given.iter().cloned());
         plan.count = plan.cells()?;
         Ok(plan)
     }
@@ -230,6 +244,22 @@ impl Plan {
         }
     }
 
+    /// Rejects settings of every cell that would override what the grid or the seeds vary.
+    fn refuse_varied(&self, given: &[Setting]) -> Result<(), Problem> {
+        let axes = self.grid.iter().filter_map(|axis| axis.first());
+        let axes = axes.filter_map(|axis| Some((format!("grid.{}", axis.key), axis.path()?)));
+        let seeds = self.seeds[0].as_ref();
+        let seeds = seeds.map(|seed| ("seeds".to_owned(), seed.path()));
+        for (place, path) in axes.chain(seeds) {
+            let is_part = |of: &&Setting| of.path().starts_with(path) || path.starts_with(of.path());
+            if let Some(setting) = given.iter().find(is_part) {
+                let reason = format!("varies in {}, which has other values", shown(&place));
+                return Err(Problem::new(setting.to_string(), reason));
+            }
+        }
+        Ok(())
+    }
+
     /// The cell at `index`, counted from 0.
     pub(super) fn cell(&self, index: usize, memory: &Memory) -> Result<Cell, RunError> {
         let mut rest = index;
@@ -252,7 +282,7 @@ impl Plan {
                 Meaning::Setting(setting) => settings.push(setting.clone()),
             }
         }
-        settings.extend(self.measurements.iter().cloned());
+        settings.extend(self.last.iter().cloned());
         settings.extend(seed);
         let values = varied
             .iter()

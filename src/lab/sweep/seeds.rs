@@ -14,13 +14,29 @@ pub(in crate::lab) enum Seeds {
     Count(u64),
     /// These seeds.
     List(Vec<u64>),
+    /// As many seeds from this one on; 0 follows the largest one. A file cannot say this.
+    From {
+        /// The first seed.
+        first: u64,
+        /// The number of seeds.
+        count: u64,
+    },
 }
 
 impl Seeds {
+    /// As many seeds as these, from `first` on.
+    pub(in crate::lab) fn from(&self, first: u64) -> Self {
+        let count = match self {
+            Self::Count(count) | Self::From { count, .. } => *count,
+            Self::List(list) => list.len() as u64,
+        };
+        Self::From { first, count }
+    }
+
     /// All seeds, after validation; at most `most` are allowed.
     pub(in crate::lab) fn all(&self, most: usize) -> Result<Vec<u64>, Problem> {
         let (count, least) = match self {
-            Self::Count(count) => (*count, "must be at least 1"),
+            Self::Count(count) | Self::From { count, .. } => (*count, "must be at least 1"),
             Self::List(list) => (list.len() as u64, "must not be empty"),
         };
         if count == 0 {
@@ -29,8 +45,12 @@ impl Seeds {
         if count > most as u64 {
             return Err(Problem::new("seeds", format!("must be at most {most}")));
         }
-        let Self::List(list) = self else {
-            return Ok((1..=count).collect());
+        let list = match self {
+            Self::Count(count) => return Ok((1..=*count).collect()),
+            Self::From { first, .. } => {
+                return Ok((0..count).map(|k| first.wrapping_add(k)).collect());
+            }
+            Self::List(list) => list,
         };
         let mut seen = HashSet::new();
         match list.iter().position(|seed| !seen.insert(seed)) {

@@ -113,7 +113,7 @@ pub struct File {
     #[schemars(schema_with = "word::<Knowledge>")]
     pub knowledge: Knowledge,
     /// Narrower passages are closed for `paths`, meters. Lower: agents also take gaps in which they get stuck. Default:
-    /// the width of the widest body; 10 % more with RVO, 20 % less with `walk+sph`, which turns shoulders.
+    /// the width of the widest body; 10 % more with RVO, 20 % less with profiles that turn shoulders (`steer+sph`).
     #[schemars(range(min = 0, max = 100))]
     pub min_passage_width: Option<f64>,
     /// The behavior of agents that name no profile of their own.
