@@ -125,6 +125,34 @@ fn the_fitted_parameter_is_found_and_the_idle_one_is_not_identified() {
 }
 
 #[test]
+fn a_frozen_parameter_keeps_its_start_and_the_generations_are_those_asked_for() {
+    let mut study = study();
+    study["screening"].take();
+    study["parameters"][1]["frozen"] = true.into();
+    study["parameters"][1]["start"] = 321.into();
+    let folder = folder(&study);
+    let listed = calibrate(folder.path(), &["--list", "--generations", "2"]);
+    assert!(
+        listed.lines().any(|line| line.ends_with("frozen")),
+        "{listed}"
+    );
+    let found = calibrate(folder.path(), &["--json", "--generations", "2"]);
+    let found: Value = serde_json::from_str(&found).unwrap();
+    assert_eq!(found["searched"], json!(["preferred_speed"]));
+    assert_eq!(found["parameters"][1]["best"], 321.0);
+    assert!(found["parameters"][1]["interval"].is_null());
+    assert_eq!(found["generations"].as_array().unwrap().len(), 2);
+    // The start, two generations of six points, and both sides of the best point.
+    let table = fs::read_to_string(folder.path().join("study/evaluations.csv")).unwrap();
+    let constants: Vec<&str> = table
+        .lines()
+        .filter_map(|line| line.split(',').nth(5))
+        .collect();
+    assert_eq!(constants[0], "gas_constant");
+    assert_eq!(constants[1..], ["321"; 1 + 12 + 2]);
+}
+
+#[test]
 fn an_interrupted_search_goes_on_to_the_same_bytes() {
     let folder = folder(&study());
     let whole = calibrate(folder.path(), &[]);

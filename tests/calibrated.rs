@@ -24,6 +24,9 @@ fn calibrated_profiles_have_the_fitted_parameters_of_their_study_within_its_boun
             let value = given[name].as_f64().unwrap();
             let [low, high] = [0, 1].map(|k| parameter["bounds"][k].as_f64().unwrap());
             assert!((low..=high).contains(&value), "{name}: {value}");
+            if parameter["frozen"] == true {
+                assert_eq!(parameter["start"].as_f64(), Some(value), "{name}");
+            }
             fitted += 1;
         }
         let all = given.as_object().unwrap().values();

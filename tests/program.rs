@@ -55,6 +55,7 @@ mod stability;
 mod strangers;
 mod stress;
 mod study_robustness;
+mod suite_changes;
 mod suites;
 mod swaying;
 mod sweep;

@@ -9,11 +9,11 @@ use proptest::sample::Index;
 use sandbox::lab::suite::{Case, Chosen, Suite};
 use sandbox::scenario::{built_in, calibrated};
 use serde_json::{Value, json};
-use tempfile::TempDir;
 
 use crate::common::bounded;
 use crate::common::documents::{count, invalid_value, replace};
 use crate::common::program::{run_in, stderr};
+use crate::common::suite::{changed, example};
 use crate::common::tracks::file_of_a_row;
 
 /// People who enter one by one at `x` meters and walk toward smaller y. Lengths are in units of `unit` meters.
@@ -98,33 +98,6 @@ fn checks_of_the_built_in_suites_name_all_runs_and_no_unknown_quantities() {
             assert!(case.picture.is_some(), "{}", case.name);
         }
     }
-}
-
-/// The files of the example in docs/validation.md: a scenario and a suite.
-fn example() -> TempDir {
-    let document = include_str!("../docs/validation.md");
-    let folder = tempfile::tempdir().unwrap();
-    for name in ["room.json", "my_suite.json"] {
-        let (_, listing) = document.split_once(&format!("`{name}`, ")).unwrap();
-        let listing = listing.split("```").nth(1).unwrap();
-        let listing = listing.strip_prefix("json\n").unwrap();
-        fs::write(folder.path().join(name), listing).unwrap();
-    }
-    folder
-}
-
-/// The suite of the example, with another value at `pointer`.
-fn changed(folder: &Path, pointer: &str, value: Value) {
-    let path = folder.join("my_suite.json");
-    let mut suite: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
-    match suite.pointer_mut(pointer) {
-        Some(old) => *old = value,
-        None => {
-            let (parent, key) = pointer.rsplit_once('/').unwrap();
-            suite.pointer_mut(parent).unwrap()[key] = value;
-        }
-    }
-    fs::write(path, suite.to_string()).unwrap();
 }
 
 #[test]

@@ -9,7 +9,7 @@ use super::arguments::{PrintOptions, ReplaceOptions, use_threads};
 use super::failure::Failure;
 use super::terminal::tell;
 use super::watch::Watch;
-use crate::lab::calibrate::{Calibration, FILES, Target, run as search};
+use crate::lab::calibrate::{Calibration, FILES, MOST_GENERATIONS, Target, run as search};
 use crate::lab::machine::main_memory;
 use crate::lab::sweep::Shard;
 use crate::output::table::Table;
@@ -36,6 +36,7 @@ pub const EXAMPLE: &str = r#"A study, JSON:
 Examples:
   sandbox calibrate study.json --list
   sandbox calibrate study.json --out results
+  sandbox calibrate steer --generations 1
   sandbox calibrate headway --shard 2/8 --out /shared/headway"#;
 
 #[derive(Args)]
@@ -48,6 +49,9 @@ pub struct CalibrateOptions {
     /// Run nothing; list the measured values, the parameters and the number of runs
     #[arg(long, conflicts_with = "shard")]
     pub list: bool,
+    /// Generations of the search at most, in place of the study's: 1 tries a study, more go on with a finished search
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST_GENERATIONS as u64))]
+    pub generations: Option<u64>,
     /// Folder for the results; runs finished there are not run again [default: the study's name]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -66,7 +70,10 @@ pub struct CalibrateOptions {
 pub fn run(options: &CalibrateOptions) -> Result<(), Failure> {
     use_threads(options.threads)?;
     options.print.apply();
-    let calibration = Calibration::open(&options.file, main_memory())?;
+    let mut calibration = Calibration::open(&options.file, main_memory())?;
+    if let Some(generations) = options.generations {
+        calibration.search.generations = generations as usize;
+    }
     if options.list {
         return tell(
             options.json,
@@ -108,7 +115,8 @@ fn listed(calibration: &Calibration) -> String {
         .column("parameter", |parameter| parameter.name.as_str())
         .column("from", |parameter| parameter.bounds[0])
         .column("to", |parameter| parameter.bounds[1])
-        .column("start", |parameter| parameter.start);
+        .column("start", |parameter| parameter.start)
+        .column("", |parameter| if parameter.frozen { "frozen" } else { "" });
     let [runs, secs] = most_runs(calibration);
     format!(
         "{}\n{}\nat most {runs} runs and about {:.1} hours on one core; scenes that empty early take less\n",
@@ -127,7 +135,8 @@ fn listed_json(calibration: &Calibration) -> Value {
         })
     });
     let parameters = calibration.parameters.iter().map(|parameter| {
-        json!({"name": parameter.name, "bounds": parameter.bounds, "start": parameter.start})
+        let (name, bounds, start) = (&parameter.name, parameter.bounds, parameter.start);
+        json!({"name": name, "bounds": bounds, "start": start, "frozen": parameter.frozen})
     });
     let [runs, secs] = most_runs(calibration);
     json!({
@@ -141,10 +150,9 @@ fn listed_json(calibration: &Calibration) -> Value {
 
 /// The number of runs if the search does not converge early, and the time that they take on one core, seconds.
 fn most_runs(calibration: &Calibration) -> [f64; 2] {
-    let dimension = calibration.parameters.len();
-    let screening = calibration
-        .screening
-        .map_or(0, |of| of.trajectories * (dimension + 1));
+    let screening = calibration.screening;
+    let screening = screening.map_or(0, |of| of.trajectories * (calibration.parameters.len() + 1));
+    let dimension = calibration.free().len();
     let generations = calibration.search.generations * calibration.population(dimension);
     let points = (1 + screening + generations + 2 * dimension) * calibration.seeds.len();
     let fitted = calibration.fitted_scenes();

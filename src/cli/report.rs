@@ -255,7 +255,11 @@ fn words(options: &ReportOptions) -> Vec<String> {
     let given = given
         .into_iter()
         .filter_map(|(name, value)| Some((name, value?)));
-    let set = scene.changes.set.iter().map(|value| ("--set", value.clone()));
+    let set = scene
+        .changes
+        .set
+        .iter()
+        .map(|value| ("--set", value.clone()));
     let words = given
         .chain(set)
         .map(|(name, value)| format!("{name} {}", quoted(&value)));

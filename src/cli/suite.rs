@@ -24,7 +24,8 @@ pub const VALIDATION: &str = "validation";
 
 /// What `--seed` and `--set` mean for suites.
 pub const FIRST_SEED: &str = "First seed of every run [default: the suite's seeds]";
-pub const EVERY_SCENE: &str = "Change a setting of every scene (see `sandbox list --settings`); may be repeated";
+pub const EVERY_SCENE: &str =
+    "Change a setting of every scene (see `sandbox list --settings`); may be repeated";
 
 #[derive(Args)]
 pub struct VerifyOptions {

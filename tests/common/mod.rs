@@ -40,6 +40,7 @@ pub mod ring;
 pub mod room;
 pub mod simulated;
 pub mod social;
+pub mod suite;
 #[cfg(feature = "program")]
 pub mod sweep;
 pub mod taut;

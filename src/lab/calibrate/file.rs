@@ -48,6 +48,8 @@ pub(super) struct ParameterKeys {
     pub scale: Scale,
     #[serde(default)]
     pub half_width: Option<f64>,
+    #[serde(default)]
+    pub frozen: bool,
 }
 
 /// The scale on which a parameter is searched.

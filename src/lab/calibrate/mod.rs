@@ -25,7 +25,7 @@ pub use parameter::Parameter;
 pub use report::{FILES, Report};
 pub use scene::{Scene, Set, Target};
 pub use search::{Found, Stage};
-pub use study::Calibration;
+pub use study::{Calibration, MOST_GENERATIONS};
 
 use crate::lab::error::LabError;
 use crate::lab::gallery;

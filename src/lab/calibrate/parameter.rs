@@ -19,6 +19,8 @@ pub struct Parameter {
     pub bounds: [f64; 2],
     /// The value at which the search begins.
     pub start: f64,
+    /// Whether the search leaves it there.
+    pub frozen: bool,
     scale: Scale,
     /// Half the width of the uniform distribution around the value that the keys get; `None`: the keys get the value
     /// itself.
@@ -42,6 +44,10 @@ impl Parameter {
             let reason = format!("must be within the bounds {low} and {high}, not {start}");
             return Err(problem("start", reason));
         }
+        if keys.frozen && keys.start.is_none() {
+            let reason = "must be given: a frozen parameter keeps it";
+            return Err(problem("start", reason.to_owned()));
+        }
         if let Some(half) = keys.half_width.filter(|half| *half <= 0.0) {
             return Err(problem(
                 "half_width",
@@ -58,6 +64,7 @@ impl Parameter {
             keys: paths,
             bounds: keys.bounds,
             start: low,
+            frozen: keys.frozen,
             scale: keys.scale,
             half_width: keys.half_width,
         };

@@ -178,20 +178,20 @@ impl Stages<'_> {
         }))
     }
 
-    /// The parameters that are searched: those that change a value by `drop_below`. A parameter whose effects could not
-    /// be computed is searched, too.
+    /// The parameters that are searched: those that are not frozen and change a value by `drop_below`. A parameter whose
+    /// effects could not be computed is searched, too.
     fn searched(&self, screened: Option<&Screened>) -> Result<Vec<usize>, LabError> {
         let of = self.evaluator.calibration;
-        let all = 0..of.parameters.len();
+        let free = of.free();
         let (Some(screened), Some(screening)) = (screened, of.screening) else {
-            return Ok(all.collect());
+            return Ok(free);
         };
         let is_searched = |parameter: &usize| {
             let effects = || screened.values.iter().map(|value| value[*parameter]);
             effects().any(|effect| effect.mean_absolute >= screening.drop_below)
                 || effects().all(|effect| effect.count == 0)
         };
-        let searched: Vec<usize> = all.filter(is_searched).collect();
+        let searched: Vec<usize> = free.into_iter().filter(is_searched).collect();
         if searched.is_empty() {
             let reason = "the screening drops all parameters; lower screening.drop_below";
             return Err(LabError::Data(reason.to_owned()));

@@ -22,7 +22,7 @@ const MOST_SEEDS: usize = 1000;
 /// Most points of a generation, and most trajectories.
 const MOST_POINTS: usize = 1000;
 /// Most generations.
-const MOST_GENERATIONS: usize = 10_000;
+pub const MOST_GENERATIONS: usize = 10_000;
 /// Largest residual of a file.
 const LARGEST_RESIDUAL: f64 = 1e6;
 
@@ -206,6 +206,12 @@ impl Calibration {
             .collect()
     }
 
+    /// The numbers of the parameters that are not frozen.
+    pub fn free(&self) -> Vec<usize> {
+        let all = 0..self.parameters.len();
+        all.filter(|&k| !self.parameters[k].frozen).collect()
+    }
+
     /// The points per generation of a search over some of the parameters.
     pub fn population(&self, parameters: usize) -> usize {
         let usual = || CmaEs::usual_population(parameters);
@@ -244,6 +250,9 @@ fn parameters(all: Vec<super::file::ParameterKeys>) -> Result<Vec<Parameter>, Pr
             }
         }
         parameters.push(parameter);
+    }
+    if parameters.iter().all(|parameter| parameter.frozen) {
+        return Err(Problem::new("parameters", "must not all be frozen"));
     }
     Ok(parameters)
 }

@@ -251,7 +251,8 @@ impl Plan {
         let seeds = self.seeds[0].as_ref();
         let seeds = seeds.map(|seed| ("seeds".to_owned(), seed.path()));
         for (place, path) in axes.chain(seeds) {
-            let is_part = |of: &&Setting| of.path().starts_with(path) || path.starts_with(of.path());
+            let is_part =
+                |of: &&Setting| of.path().starts_with(path) || path.starts_with(of.path());
             if let Some(setting) = given.iter().find(is_part) {
                 let reason = format!("varies in {}, which has other values", shown(&place));
                 return Err(Problem::new(setting.to_string(), reason));
