@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sandbox::lab::differences::{Difference, Differences, of_reports, of_tracks};
+use sandbox::lab::differences::{Difference, Differences, NotAReport, of_reports, of_tracks};
 use sandbox::lab::reproduce::published_for;
 use sandbox::scenario::trajectories::{ReadOptions, read_text};
 use sandbox::scenario::{Scenario, Setting};
@@ -120,7 +120,29 @@ fn differences_name_settings_and_measurements_with_their_change() {
     assert!(of_reports(&a, &floats).unwrap().results.is_empty());
     let none = of_reports(&a, &a).unwrap();
     assert_eq!((none.settings.len(), none.results.len()), (0, 0));
-    assert!(of_reports(&a, &json!({"study": "x"})).is_err());
+    let study = json!({"study": "x"});
+    for (pair, which) in [([&a, &study], 1), ([&study, &a], 0)] {
+        let error = of_reports(pair[0], pair[1]).unwrap_err();
+        assert_eq!(error, NotAReport { which });
+    }
+}
+
+#[test]
+fn numbers_that_differ_by_rounding_are_equal() {
+    let run = |flow: f64| result(&json!({"flow": flow}), &json!({"speed": flow}));
+    for (other, differs) in [
+        (1.8 + 4.0 * f64::EPSILON, false),
+        (1.8 * (1.0 + 1e-13), false),
+        (1.8 * (1.0 + 1e-11), true),
+        (0.0, true),
+    ] {
+        let found = of_reports(&run(1.8), &run(other)).unwrap();
+        let counts = (found.results.len(), found.settings.len());
+        let expected = usize::from(differs);
+        assert_eq!(counts, (expected, expected), "{other}");
+    }
+    let tiny = of_reports(&run(0.0), &run(1e-300)).unwrap();
+    assert_eq!(tiny.results.len(), 1, "a relative difference of 1");
 }
 
 #[test]
@@ -237,7 +259,9 @@ fn the_program_compares_files_of_one_kind() {
     refused(&["compare", &a, &path("b.csv")], 2, &["give two of a kind"]);
     let answer = path("answer.json");
     std::fs::write(&answer, r#"{"estimate": {"results": []}}"#).unwrap();
-    refused(&["compare", &a, &answer], 2, &["one is an estimate"]);
+    let one_is = format!("{answer} is an estimate, {a} is not");
+    refused(&["compare", &a, &answer], 2, &[&one_is]);
+    refused(&["compare", &answer, &a], 2, &[&one_is]);
     // A recording has the result of its run.
     let recorded = |name: &str| path(&format!("{name}.rrd"));
     let same = run_json(&["compare", &a, &recorded("a"), "--json"]);

@@ -264,7 +264,7 @@ fn rooms_that_nearly_touch_are_noted() {
             ]),
         )
     };
-    for (gap, text) in [(0.001, "1 mm at (0.00, 5.00)"), (0.015, "15 mm")] {
+    for (gap, text) in [(0.001, "1 mm apart at (0.00, 5.00)"), (0.015, "15 mm")] {
         let found = note(&rooms(gap));
         assert!(
             found.contains(text) && found.contains("agents cannot pass"),

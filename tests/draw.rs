@@ -365,6 +365,11 @@ fn what_cannot_be_drawn_is_refused_with_advice() {
     draw(&hall, &["--range", "2,1"], &["FROM,TO"]);
     draw(&hall, &["--width", "5"], &["millimeters", "px"]);
     draw(&hall, &["--from", "2", "--to", "2"], &["0 frames"]);
+    draw(
+        &hall,
+        &["--from", "2", "--to", "1"],
+        &["--to 1 is before --from 2"],
+    );
     let video = folder.path("still.gif");
     refused(
         &["draw", text(&hall), "-o", text(&video)],

@@ -111,6 +111,34 @@ fn polygons_without_effect_are_noted() {
 }
 
 #[test]
+fn holes_off_the_floor_are_noted() {
+    let note = |holes: &str| {
+        format!("{holes}: holes wholly off the floor have no effect; move or remove them")
+    };
+    let hall = "POLYGON ((0 0, 9 0, 9 9, 0 9)";
+    let [off, far] = ["(20 0, 22 0, 22 2, 20 2)", "(0 50, 2 50, 2 52, 0 52)"];
+    let other = "POLYGON ((20 0, 29 0, 29 9, 20 9))";
+    for (plan, notes) in [
+        (format!("{hall}, {off})"), vec![note("line 1, hole 1")]),
+        (
+            format!("{hall}, (1 1, 2 1, 2 2), {off}, {far})"),
+            vec![note("line 1, hole 2 and 1 more")],
+        ),
+        // It is cut out of another floor.
+        (format!("{hall}, {off})\n{other}"), vec![]),
+        (format!("{hall}, (8 8, 12 8, 12 12, 8 12))"), vec![]),
+        (format!("{hall}, (-5 4, 14 4, 14 5, -5 5))"), vec![]),
+        // Beside the floor, along its edge.
+        (
+            format!("{hall}, (9 1, 10 1, 10 2, 9 2))"),
+            vec![note("line 1, hole 1")],
+        ),
+    ] {
+        assert_eq!(floor_plan::parse(&plan).unwrap().notes, notes, "{plan}");
+    }
+}
+
+#[test]
 fn of_equal_floors_all_but_the_first_are_noted() {
     let rooms = ["POLYGON ((0 0, 9 0, 9 9, 0 9))"; 3].join("\n");
     let note = "line 2 and 1 more: floor wholly inside other floor (line 1) adds nothing; remove it, or make it an \

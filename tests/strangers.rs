@@ -2,12 +2,14 @@
 //! answered with what to do (tests/data/strangers.json).
 
 use std::fs;
+use std::io::Write;
+use std::process::{Command, Stdio};
 
 use sandbox::scenario::Scenario;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use crate::common::program::{run, stderr};
+use crate::common::program::{PROGRAM, run, stderr};
 
 /// A slip, and a part of the answer.
 #[derive(Deserialize)]
@@ -69,7 +71,7 @@ fn is_long(word: &str) -> bool {
 #[test]
 fn every_slip_of_a_stranger_is_answered_with_what_to_do() {
     let slips: Vec<Slip> = serde_json::from_str(include_str!("data/strangers.json")).unwrap();
-    assert!(slips.len() > 60);
+    assert!(slips.len() > 110);
     assert_eq!(answer(&room().to_string()), "");
     let folder = tempfile::tempdir().unwrap();
     let files = [
@@ -78,6 +80,10 @@ fn every_slip_of_a_stranger_is_answered_with_what_to_do() {
         ("p.png", "no picture".to_owned()),
         ("t.csv", "id,frame,x,y\n1,0,0,0\n".to_owned()),
         (
+            "result.json",
+            json!({"state_sha256": "", "metrics": {}}).to_string(),
+        ),
+        (
             "t.txt",
             "# id frame x/m y/m\n1 0 0 0\n1 1 0.1 0\n".to_owned(),
         ),
@@ -85,6 +91,9 @@ fn every_slip_of_a_stranger_is_answered_with_what_to_do() {
     for (name, text) in &files {
         fs::write(folder.path().join(name), text).unwrap();
     }
+    let utf16 = "POLYGON".encode_utf16().flat_map(u16::to_le_bytes);
+    let utf16: Vec<u8> = [0xff, 0xfe].into_iter().chain(utf16).collect();
+    fs::write(folder.path().join("utf16.wkt"), utf16).unwrap();
     let place = folder.path().to_str().unwrap();
     for slip in &slips {
         let (about, found, said) = match slip {
@@ -209,4 +218,33 @@ fn a_run_says_which_motivation_it_used() {
     let hurried = first(&["--profile", "steer+sph"]); // as the file says
     assert!(hurried.contains("(steer+sph, motivation 1)"), "{hurried}");
     assert!(first(&[]).contains("(sph), seed 1"), "no law reads it");
+}
+
+#[test]
+fn a_scenario_can_come_from_the_standard_input() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("room.json"), room().to_string()).unwrap();
+    let digest = |typed: &[&str], given: &str| {
+        let mut program = Command::new(PROGRAM);
+        let program = program.args(typed).current_dir(folder.path());
+        let streams = program.stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut child = streams.stderr(Stdio::piped()).spawn().unwrap();
+        let mut input = child.stdin.take().unwrap();
+        input.write_all(given.as_bytes()).unwrap();
+        drop(input);
+        let output = child.wait_with_output().unwrap();
+        let report: Option<Value> = serde_json::from_slice(&output.stdout).ok();
+        let digest = report.map(|report| report["state_sha256"].clone());
+        (digest, stderr(&output))
+    };
+    let piped = digest(&["run", "-", "--until", "1", "--json"], &room().to_string());
+    let named = digest(&["run", "room.json", "--until", "1", "--json"], "");
+    assert!(piped.0.is_some(), "{}", piped.1);
+    assert_eq!(piped.0, named.0);
+    let (none, said) = digest(&["run", "-", "--json"], "{\"sed\": 1}");
+    assert!(none.is_none());
+    assert!(
+        said.contains("error: standard input: sed: unknown key"),
+        "{said}"
+    );
 }

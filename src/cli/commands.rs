@@ -61,7 +61,7 @@ pub enum Command {
     /// Run a scenario file
     #[command(after_help = "Example: sandbox run my_station.json --until 60 --threads 2 --json")]
     Run {
-        /// The scenario, a JSON file; or the name of a built-in one
+        /// The scenario, a JSON file (`-`: the standard input); or the name of a built-in one
         file: PathBuf,
         #[command(flatten)]
         options: RunOptions,

@@ -10,10 +10,11 @@ use super::failure::Failure;
 use super::inputs::tracks;
 use super::terminal::{talk, tell};
 use super::values::frame_rate;
-use crate::lab::differences::{Differences, of_reports, of_tracks};
+use crate::lab::differences::{Differences, NotAReport, of_reports, of_tracks};
 use crate::lab::estimate::{compared, is_answer};
 use crate::output::recording::Recorded;
 use crate::scenario::input;
+use crate::scenario::kinds::is_scenario;
 use crate::scenario::quote::shown;
 use crate::scenario::trajectories::{ReadOptions, Tracks, Unit};
 
@@ -48,20 +49,34 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
     };
     let (a, b) = (open(&options.a, &read)?, open(&options.b, &read)?);
     let paths = [&options.a, &options.b];
-    let [first, second] = paths.map(|path| path.display());
+    let names = paths.map(|path| path.display().to_string());
+    let [first, second] = names.each_ref().map(String::as_str);
     let differences: Differences = match (&a, &b) {
         (Input::Report(a), Input::Report(b)) if is_answer(a) && is_answer(b) => {
-            let invalid = |error| Failure::Input(format!("{first} or {second}: {error}"));
-            let compared = compared(a, b).map_err(invalid)?;
+            let compared = compared([(first, a), (second, b)]);
+            let compared = compared.map_err(|error| Failure::Input(error.to_string()))?;
             return tell(options.json, || compared.json(), || compared.text());
         }
         (Input::Report(a), Input::Report(b)) if is_answer(a) || is_answer(b) => {
+            let (is, is_not) = if is_answer(a) {
+                (first, second)
+            } else {
+                (second, first)
+            };
             return Err(Failure::Input(format!(
-                "{first} and {second}: one is an estimate, the other is not; give two of a kind"
+                "{is} is an estimate, {is_not} is not; give two of a kind"
             )));
         }
         (Input::Report(a), Input::Report(b)) => {
-            let invalid = |error| Failure::Input(format!("{first} or {second}: {error}"));
+            let invalid = |error: NotAReport| {
+                let (name, report) = [(first, a), (second, b)][error.which];
+                let scenario = if is_scenario(report) {
+                    "a scenario, "
+                } else {
+                    ""
+                };
+                Failure::Input(format!("{name}: {scenario}{error}"))
+            };
             let differences = of_reports(a, b).map_err(invalid)?;
             for (path, report) in paths.into_iter().zip([a, b]) {
                 if report.get("settings").is_none() {
@@ -75,8 +90,14 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
         }
         (Input::Tracks(a), Input::Tracks(b)) => of_tracks(a, b),
         _ => {
+            let is_first = matches!(a, Input::Report(_));
+            let (result, tracks) = if is_first {
+                (first, second)
+            } else {
+                (second, first)
+            };
             return Err(Failure::Input(format!(
-                "{first} and {second}: one is the result of a run, the other has trajectories; give two of a kind"
+                "{result} is the result of a run, {tracks} has trajectories; give two of a kind"
             )));
         }
     };

@@ -104,6 +104,16 @@ fn floor_plan(path: &Path) -> Result<FloorPlan, Failure> {
     Ok(plan)
 }
 
+/// Rejects a period that ends before it begins: two options with their times, seconds.
+pub fn in_order((first, from): (&str, f64), (second, to): (&str, f64)) -> Result<(), Failure> {
+    match to < from {
+        true => Err(Failure::Input(format!(
+            "{second} {to} is before {first} {from}"
+        ))),
+        false => Ok(()),
+    }
+}
+
 /// Reads trajectories.
 pub fn tracks(path: &Path, options: &ReadOptions) -> Result<Tracks, Failure> {
     let tracks = trajectories::read(path, options)?;

@@ -78,13 +78,12 @@ pub fn main_of<A: Parser>(
     arguments: impl IntoIterator<Item = OsString>,
     run: impl FnOnce(A) -> Result<(), Failure>,
 ) -> u8 {
-    let failure = match A::try_parse_from(arguments) {
+    let typed: Vec<OsString> = arguments.into_iter().collect();
+    let failure = match A::try_parse_from(&typed) {
         Ok(arguments) => run(arguments).err(),
         Err(error) => {
+            let error = tips::added(error, &A::command(), &typed);
             error.print().ok();
-            if let Some(tip) = tips::of(&error) {
-                talk(&tip);
-            }
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };

@@ -51,8 +51,8 @@ pub fn to_the_end<'a>(
     }
 }
 
-/// Advances to a time, seconds, even beyond the scenario's end; fails if no agents are left before. `option` asks for
-/// the time.
+/// Advances to the frame nearest to a time, seconds, even beyond the scenario's end; fails if no agents are left then.
+/// `option` asks for the time.
 pub fn advance(
     simulation: &mut Simulation,
     to: f64,
@@ -63,16 +63,25 @@ pub fn advance(
         progress.show(simulation);
         simulation.step()?;
         if simulation.frame().agents.count_present() == 0 && !simulation.expects_agents() {
-            return Err(none_left(option, simulation));
+            return Err(none_left((option, to), simulation));
         }
     }
     Ok(())
 }
 
-/// `option` asks for a time at which no agents are left.
-pub fn none_left(option: &str, simulation: &Simulation) -> Failure {
-    let time = simulation.frame().clock.time();
-    Failure::Input(format!(
-        "{option}: no agents are left at that time: the last one leaves at {time:.2} s"
-    ))
+/// `option` asks for a time, seconds, at which no agents are left: the last one has just left.
+pub fn none_left((option, asked): (&str, f64), simulation: &Simulation) -> Failure {
+    /// Times that differ by less are equal, seconds.
+    const ROUNDING: f64 = 1e-9;
+    let clock = simulation.frame().clock;
+    let time = clock.time();
+    Failure::Input(match asked < time - ROUNDING {
+        true => format!(
+            "{option}: no agents are left in the nearest frame, that of {time:.2} s; give at most {:.2}",
+            clock.time_at(clock.frame().saturating_sub(1))
+        ),
+        false => {
+            format!("{option}: no agents are left at that time: the last one leaves at {time:.2} s")
+        }
+    })
 }

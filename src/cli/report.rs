@@ -19,6 +19,7 @@ use crate::runs::case::Source;
 use crate::runs::drive::{End, Observer, Run};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::runs::store::Store;
+use crate::scenario::input::is_standard_input;
 use crate::scenario::measurements::Measurement;
 use crate::scenario::quote::shown;
 use crate::scenario::{Scenario, read_text};
@@ -87,7 +88,10 @@ fn study(options: &ReportOptions) -> Result<Option<Study>, Failure> {
                 .iter()
                 .any(|key| text.as_ref().is_some_and(|text| text.get(key).is_some()))
         }
-        false => Source::shipped(&options.run).is_none() && path.extension().is_none(),
+        false => {
+            let is_scenario = Source::shipped(&options.run).is_some() || is_standard_input(path);
+            !is_scenario && path.extension().is_none()
+        }
     };
     match is_study {
         true => Ok(Some(Study::open(path, None)?)),
@@ -202,7 +206,9 @@ impl Observer<Failure> for Watch<'_> {
         let is_empty = simulation.frame().agents.count_present() == 0;
         let option = format!("--at {missing}");
         match then {
-            _ if is_empty && !simulation.expects_agents() => Err(none_left(&option, simulation)),
+            _ if is_empty && !simulation.expects_agents() => {
+                Err(none_left((&option, missing), simulation))
+            }
             ControlFlow::Break(end) if end != End::Interrupted => Err(Failure::Input(format!(
                 "{option}: the run ends at {:.2} s: {}",
                 simulation.frame().clock.time(),

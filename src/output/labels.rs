@@ -82,15 +82,26 @@ pub struct Labels {
     placed: Vec<Placed>,
     /// Points that labels cover only if they find no other place nearby, by x.
     avoided: Vec<Vector>,
+    /// The corners of areas, meters: the label of one lies on another only if it finds no other place.
+    areas: Vec<[Vector; 2]>,
 }
 
 /// A possible place of a label.
+#[derive(Clone, Copy)]
 struct Candidate {
     around: [Vector; 2],
     spot: Spot,
     at: Vector,
     /// The distance from its point, points.
     distance: f64,
+}
+
+impl Candidate {
+    /// Whether it lies on a box with these corners.
+    fn covers(&self, [l, h]: [Vector; 2]) -> bool {
+        let [low, high] = self.around;
+        low.x < h.x && l.x < high.x && low.y < h.y && l.y < high.y
+    }
 }
 
 impl Labels {
@@ -101,7 +112,20 @@ impl Labels {
             screen,
             placed: Vec::new(),
             avoided,
+            areas: Vec::new(),
         }
+    }
+
+    /// The same among the waiting areas, disks and zones of a scene: the label of one lies on another only if it finds
+    /// no other place.
+    pub fn among_areas(mut self, scene: &Scene) -> Self {
+        let places = scene.journeys.places.iter();
+        let is_area = |place: &&Place| matches!(place.kind, Kind::Waiting(_) | Kind::Disk { .. });
+        let rings = places.filter(is_area).map(scenery::lines);
+        let zones = scene.journeys.zones.iter();
+        let rings = rings.chain(zones.map(|zone| zone.area.points().to_vec()));
+        self.areas = rings.filter_map(bounds).collect();
+        self
     }
 
     /// Adds a label at the first of `spots` where it fits inside and covers no other label, or farther away with a line
@@ -126,18 +150,30 @@ impl Labels {
         });
         let candidates = candidates.map(|(spot, distance)| self.candidate(width, spot, distance));
         let free: Vec<Candidate> = candidates.filter(|one| self.is_free(one)).collect();
-        let empty = free.iter().find(|one| self.is_empty(one));
-        let Some(found) = empty.or(free.first().filter(|_| !is_one_of_many)) else {
+        let others = self.other_areas(spots);
+        let is_astray = |one: &Candidate| others.iter().any(|area| one.covers(*area));
+        let best = |all: &[&Candidate]| -> Option<Candidate> {
+            let empty = all.iter().find(|one| self.is_empty(one));
+            let found = empty.or(all.first().filter(|_| !is_one_of_many));
+            found.map(|found| **found)
+        };
+        let right: Vec<&Candidate> = free.iter().filter(|one| !is_astray(one)).collect();
+        let Some(found) = best(&right).or_else(|| best(&free.iter().collect::<Vec<_>>())) else {
             return false;
         };
         let (point, side) = found.spot;
+        let astray = is_astray(&found).then(|| {
+            // Into its own area, so that the line is seen.
+            let back = Vector::from(side.map(f64::from)) * self.screen.meters(2.0 * GAP);
+            point - back
+        });
         self.placed.push(Placed {
             text,
             color,
             around: found.around,
             side,
             at: found.at,
-            leader: (found.distance > GAP).then_some(point),
+            leader: astray.or((found.distance > GAP).then_some(point)),
         });
         true
     }
@@ -152,13 +188,42 @@ impl Labels {
         (self.screen.width)(&brief(&label.text)) <= room && self.add(&label.text, color, &spots)
     }
 
+    /// The areas on which the label with these spots should not lie, if it is that of an area: all others but those
+    /// around it.
+    fn other_areas(&self, spots: &[Spot]) -> Vec<[Vector; 2]> {
+        /// Corners are that near to their areas, meters.
+        const SAME: f64 = 1e-6;
+        let reach = Vector::repeat(SAME);
+        let holds = |[l, h]: [Vector; 2], [low, high]: [Vector; 2]| {
+            let (low, high) = (low + reach, high - reach);
+            l == l.inf(&low) && h == h.sup(&high)
+        };
+        let Some(own) = bounds(spots.iter().map(|spot| spot.0)) else {
+            return Vec::new();
+        };
+        let is_own = |area: &[Vector; 2]| holds(*area, own) && holds(own, *area);
+        if !self.areas.iter().any(is_own) {
+            return Vec::new();
+        }
+        let areas = self.areas.iter().copied();
+        areas.filter(|area| !holds(*area, own)).collect()
+    }
+
+    /// A place beside a point; above and below it, a label that would reach beyond the screen is shifted along it.
     fn candidate(&self, width: f64, spot: Spot, distance: f64) -> Candidate {
         let screen = &self.screen;
         // Some room between two labels in a row.
         let size = [width + 0.5 * screen.height, screen.height].map(|side| screen.meters(side));
         let half = Vector::from(size) * 0.5;
         let side = Vector::from(spot.1.map(f64::from));
-        let at = spot.0 + side * screen.meters(distance);
+        let mut at = spot.0 + side * screen.meters(distance);
+        if spot.1[0] == 0 && spot.1[1] != 0 {
+            let [least, most] = screen.inside.map(|end| end.x);
+            let shifted = at.x.min(most - half.x).max(least + half.x);
+            if (shifted - at.x).abs() < half.x {
+                at.x = shifted;
+            }
+        }
         let center = at + side.component_mul(&half);
         Candidate {
             around: [center - half, center + half],
@@ -172,12 +237,8 @@ impl Labels {
     fn is_free(&self, place: &Candidate) -> bool {
         let [low, high] = place.around;
         let [least, most] = self.screen.inside;
-        let covers = |placed: &Placed| {
-            let [l, h] = placed.around;
-            low.x < h.x && l.x < high.x && low.y < h.y && l.y < high.y
-        };
         let fits = low == low.sup(&least) && high == high.inf(&most);
-        fits && !self.placed.iter().any(covers)
+        fits && !self.placed.iter().any(|placed| place.covers(placed.around))
     }
 
     /// Whether a label there covers none of the points to avoid.

@@ -15,6 +15,7 @@ use super::memory::Memory;
 use super::summary::Summary;
 use crate::engine::simulation::Fault;
 use crate::scenario::floor_plan::is_plan;
+use crate::scenario::input::is_standard_input;
 use crate::scenario::kinds;
 use crate::scenario::quote::shown;
 use crate::scenario::{
@@ -26,7 +27,7 @@ use crate::scenario::{
 pub enum Source {
     /// A file that is built into the program, relative to `scenarios/`.
     BuiltIn(PathBuf),
-    /// A scenario from a file.
+    /// A scenario from a file, or for `-` from the standard input.
     File(PathBuf),
 }
 
@@ -70,7 +71,11 @@ impl Source {
                 }
             },
         };
-        Ok((text, path.display().to_string()))
+        let name = match is_standard_input(path) {
+            true => "standard input".to_owned(),
+            false => path.display().to_string(),
+        };
+        Ok((text, name))
     }
 }
 

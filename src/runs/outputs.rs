@@ -43,6 +43,9 @@ pub enum OutputsError {
         "{0} and {1} are the same file; an input is never replaced, not even with --force: write to another file"
     )]
     Input(String, String),
+    /// The folder of a file does not exist.
+    #[error("{0}: the folder {1} does not exist: make it")]
+    NoFolder(String, String),
     /// The file cannot be written, with the system's message.
     #[error("{0}: cannot be written: {1}")]
     Unwritable(String, String),
@@ -75,6 +78,18 @@ impl Output {
     /// Its name in messages.
     fn name(&self) -> String {
         format!("{} {}", self.option, self.path.display())
+    }
+
+    /// Why it cannot be written.
+    fn unwritable(&self, error: &io::Error) -> OutputsError {
+        let place = followed(&self.path).unwrap_or_else(|_| self.path.clone());
+        let folder = folder_of(&place);
+        match error.kind() {
+            ErrorKind::NotFound if !folder.exists() => {
+                OutputsError::NoFolder(self.name(), folder.display().to_string())
+            }
+            _ => OutputsError::Unwritable(self.name(), error.to_string()),
+        }
     }
 }
 
@@ -125,8 +140,7 @@ impl Outputs {
         let mut existed = Vec::with_capacity(self.outputs.len());
         for output in &self.outputs {
             let tried = trial.attempt(output);
-            let unwritable = |e: io::Error| OutputsError::Unwritable(output.name(), e.to_string());
-            existed.push(tried.map_err(unwritable)?);
+            existed.push(tried.map_err(|error| output.unwritable(&error))?);
         }
         // The trial files still exist, so every output has an identity.
         let files: Vec<_> = self.outputs.iter().map(|o| identity(&o.path)).collect();

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
+use std::sync::OnceLock;
 
 /// Longest text that is read, bytes. A scenario with ten million corners takes 200 MB.
 pub const LONGEST_TEXT: u64 = 1 << 28;
@@ -30,8 +31,36 @@ pub fn without_mark(text: &str) -> &str {
 /// # Errors
 /// The file cannot be read, has more than [`LONGEST_TEXT`] bytes, or is not UTF-8.
 pub fn text(path: &Path) -> Result<String> {
-    let text = String::from_utf8(bytes(path, LONGEST_TEXT)?);
-    let mut text = text.map_err(|_| Error::new(ErrorKind::InvalidData, "not UTF-8 text"))?;
+    text_of(bytes(path, LONGEST_TEXT)?)
+}
+
+/// The path that stands for the standard input.
+const STANDARD_INPUT: &str = "-";
+
+/// Whether a path stands for the standard input.
+pub fn is_standard_input(path: &Path) -> bool {
+    path.as_os_str() == STANDARD_INPUT
+}
+
+/// The text of the standard input, which is read once, without a byte-order mark.
+///
+/// # Errors
+/// As [`text`].
+pub fn standard_input() -> Result<String> {
+    static READ: OnceLock<std::result::Result<String, (ErrorKind, String)>> = OnceLock::new();
+    let read = READ.get_or_init(|| {
+        let read = rest(std::io::stdin(), LONGEST_TEXT).and_then(text_of);
+        read.map_err(|error| (error.kind(), error.to_string()))
+    });
+    read.clone().map_err(|(kind, said)| Error::new(kind, said))
+}
+
+fn text_of(bytes: Vec<u8>) -> Result<String> {
+    let text = String::from_utf8(bytes);
+    let mut text = text.map_err(|_| {
+        let reason = "not UTF-8 text; save it as UTF-8";
+        Error::new(ErrorKind::InvalidData, reason)
+    })?;
     text.drain(..text.len() - without_mark(&text).len());
     Ok(text)
 }

@@ -18,7 +18,7 @@ use serde_json::json;
 use super::arguments::{SceneOptions, use_threads};
 use super::failure::Failure;
 use super::frames::{Run, recorded, tracked};
-use super::inputs::NO_WALLS;
+use super::inputs::{NO_WALLS, in_order};
 use super::interrupt::Interrupt;
 use super::moment;
 use super::terminal::tell;
@@ -58,6 +58,7 @@ impl Times {
                 is_animation: false,
             });
         };
+        in_order(("--from", from), ("--to", to))?;
         let count = ((to - from) * options.fps).round();
         if !(1.0..=MOST_FRAMES).contains(&count) {
             return Err(Failure::Input(format!(

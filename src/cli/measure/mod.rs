@@ -8,7 +8,7 @@ use std::path::Path;
 
 use super::arguments::use_threads;
 use super::failure::Failure;
-use super::inputs::{site, tracks};
+use super::inputs::{in_order, site, tracks};
 use super::terminal::{talk, tell};
 use super::watch::bar;
 use crate::engine::boundary::WallMethod;
@@ -36,6 +36,9 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
         name.push("-measured");
         name.into()
     });
+    if let (Some(from), Some(until)) = (options.from, options.until) {
+        in_order(("--from", from), ("--until", until))?;
+    }
     check_outputs(options, &folder)?;
     let read = ReadOptions {
         unit: options.unit.as_deref().and_then(Unit::named),

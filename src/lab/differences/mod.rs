@@ -133,15 +133,19 @@ fn different(a: &Map<String, Value>, b: &Map<String, Value>) -> (Vec<Difference>
     (differ, equal.len())
 }
 
-/// Whether two values are equal; 5 and 5.0 are. Whole numbers are compared digit by digit: floats do not hold all
-/// seeds.
+/// Decimal numbers whose relative difference is smaller are equal: it comes from rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Whether two values are equal, up to rounding; 5 and 5.0 are. Whole numbers are compared digit by digit: floats do
+/// not hold all seeds.
 fn are_equal(a: &Value, b: &Value) -> bool {
     match (a, b) {
         (Value::Array(a), Value::Array(b)) => {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| are_equal(a, b))
         }
         (Value::Number(one), Value::Number(other)) if one.is_f64() || other.is_f64() => {
-            one.as_f64() == other.as_f64()
+            let [one, other] = [one, other].map(|number| number.as_f64().unwrap_or(f64::NAN));
+            one == other || (one - other).abs() <= ROUNDING * one.abs().max(other.abs())
         }
         _ => a == b,
     }

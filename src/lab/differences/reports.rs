@@ -14,16 +14,20 @@ const SETTINGS: &str = "settings";
 /// A JSON value is not the result of a run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("not the result of a run; write one with `sandbox run SCENARIO --json > FILE`")]
-pub struct NotAReport;
+pub struct NotAReport {
+    /// Which of the two it is: 0 or 1.
+    pub which: usize,
+}
 
 /// The differences between two runs, as `--json` reports them. Run times are not compared.
 ///
 /// # Errors
 /// A value is not the result of a run.
 pub fn of_reports(a: &Value, b: &Value) -> Result<Differences, NotAReport> {
-    let [a, b] = [a, b].map(|report| {
+    let [a, b] = [(a, 0), (b, 1)].map(|(report, which)| {
         let is_run = report["state_sha256"].is_string() && report["metrics"].is_object();
-        report.as_object().filter(|_| is_run).ok_or(NotAReport)
+        let report = report.as_object().filter(|_| is_run);
+        report.ok_or(NotAReport { which })
     });
     let (a, b) = (a?, b?);
     let mut differences = Differences::default();

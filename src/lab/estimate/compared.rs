@@ -73,15 +73,22 @@ pub fn is_answer(value: &Value) -> bool {
     value["estimate"]["results"].is_array()
 }
 
-/// The differences between two answers.
+/// The differences between two answers, each with its name in messages.
 ///
 /// # Errors
 /// One of them is not the JSON of an answer, or they have intervals of different probabilities.
-pub fn compared(a: &Value, b: &Value) -> Result<Compared, LabError> {
-    let [a, b]: [Kept; 2] = [read(&a["estimate"])?, read(&b["estimate"])?];
+pub fn compared(answers: [(&str, &Value); 2]) -> Result<Compared, LabError> {
+    let kept = |(name, answer): (&str, &Value)| {
+        let kept: Result<Kept, LabError> = read(&answer["estimate"]);
+        kept.map_err(|error| LabError::Data(format!("{name}: {error}")))
+    };
+    let [first, second] = answers;
+    let (a, b) = (kept(first)?, kept(second)?);
     if a.confidence != b.confidence {
         let reason = format!(
-            "intervals of {} and {} % cannot be compared; estimate one of them again with the other --confidence",
+            "{} and {}: intervals of {} and {} % cannot be compared; estimate one of them again with the other --confidence",
+            first.0,
+            second.0,
             100.0 * a.confidence,
             100.0 * b.confidence
         );

@@ -142,22 +142,7 @@ impl Answer {
             round::brief(self.secs)
         );
         for row in self.results.iter().filter(|row| row.reached.error > 0.0) {
-            let default = row.default;
-            let error = row.written(default.error_of_step);
-            text += &match default.runs {
-                Some(runs) => format!(
-                    " The default step of 0.02 s has an error of {error} in {}: its runs alone, without those that \
-                     show this error, would have been {} and {} s.",
-                    row.name,
-                    runs.ceil(),
-                    round::brief(runs.ceil() * default.timed.secs)
-                ),
-                None => format!(
-                    " The default step of 0.02 s has an error of {error} in {}: no number of runs gives ± {}.",
-                    row.name,
-                    row.written(row.reached.error)
-                ),
-            };
+            text += &row.at_default_step();
         }
         let secs = |secs: Option<f64>| secs.map_or("none".to_owned(), round::brief);
         let costs = self.costs.iter();
@@ -270,6 +255,26 @@ impl Row {
     /// A number of this result with as many decimals as its error has in two digits.
     pub fn written(&self, number: f64) -> String {
         as_precise(number, self.reached.error)
+    }
+
+    /// The error of the default step, and the runs at it alone that give the same error as all runs.
+    fn at_default_step(&self) -> String {
+        let (name, default) = (&self.name, self.default);
+        let [found, reached] = [default.error_of_step, self.reached.error];
+        let [error, around] = [found, reached].map(|error| self.written(error));
+        let what = match found.abs() < reached {
+            true => {
+                format!("No error of the default step of 0.02 s was found in {name} (± {around})")
+            }
+            false => format!("The default step of 0.02 s has an error of {error} in {name}"),
+        };
+        match default.runs.map(f64::ceil) {
+            Some(runs) => format!(
+                " {what}: the same ± takes {runs} runs at this step alone, {} s.",
+                round::brief(runs * default.timed.secs)
+            ),
+            None => format!(" {what}: no number of runs at this step gives ± {around}."),
+        }
     }
 
     /// Whether the error is as small as asked for.

@@ -67,8 +67,14 @@ impl Written {
     /// As [`read`](Self::read).
     pub fn open(path: &Path, folder: &str) -> Result<Self, ScenarioError> {
         let name = path.to_str().filter(|_| !path.exists());
-        match name.and_then(|name| Self::built_in(folder, name).ok()) {
-            Some(built_in) => Ok(built_in),
+        if let Some(built_in) = name.and_then(|name| Self::built_in(folder, name).ok()) {
+            return Ok(built_in);
+        }
+        match name.filter(|name| Source::shipped(name).is_some()) {
+            Some(name) => Err(ScenarioError::Unreadable {
+                file: name.to_owned(),
+                reason: format!("is a scenario, no file of this command: sandbox run {name}"),
+            }),
             None => Self::read(path),
         }
     }

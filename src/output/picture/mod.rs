@@ -256,7 +256,7 @@ impl<'a> Picture<'a> {
 
     fn panel(&self, frame: &Frame, paths: Option<&Paths>) -> Panel {
         let scene = self.scene;
-        let mut labels = Labels::new(frame.screen(), self.avoided(frame));
+        let mut labels = Labels::new(frame.screen(), self.avoided(frame)).among_areas(scene);
         // The names of places first: they are the most important.
         let places = scene::places(self, frame, &mut labels);
         let mut below = scene::ground(scene);
@@ -323,7 +323,8 @@ impl<'a> Picture<'a> {
     pub fn plan(&self) -> ([Vector; 2], Vec<Mark>, Vec<Mark>) {
         let shown = self.shown();
         let frame = Frame::around(shown, ALONE, MARGIN);
-        let mut labels = Labels::new(frame.screen(), self.avoided(&frame));
+        let labels = Labels::new(frame.screen(), self.avoided(&frame));
+        let mut labels = labels.among_areas(self.scene);
         let places = scene::places(self, &frame, &mut labels);
         let below = scene::ground(self.scene).into_iter();
         let below = below.chain(scene::tints(self.scene)).collect();

@@ -6,6 +6,7 @@ use crate::engine::geometry::{Ring, Walls};
 use crate::engine::journeys::{Kind, Place};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::ways::{Floor, nearest_on};
+use crate::scenario::build::places;
 use crate::scenario::build::places::SHORTEST_LINE;
 use crate::scenario::error::Problem;
 use crate::scenario::error::quote::{shown, to_centimeters};
@@ -135,6 +136,22 @@ fn overlap([a, b]: [Vector; 2], ends: [Vector; 2]) -> bool {
     let near = all.all(|end| along.perp(&(end - a)).abs() <= ON_LINE);
     let [from, to] = ends.map(|end| along.dot(&(end - a)));
     near && from.max(to).min(length) - from.min(to).max(0.0) > OVERLAP
+}
+
+/// The problem of two doors whose lines cross near a point.
+pub fn crossing(places: &[Place], at: Vector) -> Option<Problem> {
+    let is_near = |&k: &usize| {
+        let line = places[k].line().filter(|_| is_door(&places[k]));
+        line.is_some_and(|[a, b]| (nearest_on(at, a, b) - at).norm() <= NEAR)
+    };
+    let mut near = (0..places.len()).filter(is_near);
+    let (one, other) = (near.next()?, near.next()?);
+    let [first, second] = [one, other].map(|k| shown(&places[k].name));
+    let [x, y] = [at.x, at.y].map(to_centimeters);
+    let reason = format!(
+        "`{second}` crosses `{first}` near ({x}, {y}): move one of the two doors, or end it at the other"
+    );
+    Some(Problem::new(places::key(places, other), reason))
 }
 
 fn is_door(place: &Place) -> bool {

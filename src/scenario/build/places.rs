@@ -1,7 +1,7 @@
 //! Single exits, waypoints, queues and zones of a file → those of a scene.
 
 use crate::engine::geometry::{Ring, Walls};
-use crate::engine::journeys::{Door, Exit, Kind, Queue, Zone};
+use crate::engine::journeys::{Door, Exit, Kind, Place, Queue, Zone};
 use crate::engine::math::{Vector, direction};
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::keys::places;
@@ -20,6 +20,26 @@ const LONGEST_TAIL: f64 = 1000.0;
 /// Default radius of a waypoint, meters.
 const WITHIN: f64 = 0.5;
 
+/// The list of places of a kind, and the key of where such a place is.
+fn keys_of(kind: &Kind) -> (&'static str, &'static str) {
+    match kind {
+        Kind::Exit(_) => ("exits", "line"),
+        Kind::Line(_) => ("waypoints", "line"),
+        Kind::Disk { .. } => ("waypoints", "at"),
+        Kind::Waiting(_) => ("waiting_areas", "area"),
+        Kind::Queue(_) => ("queues", "path"),
+        Kind::Door(_) => ("doors", "line"),
+    }
+}
+
+/// The key of where place number `k` is: `waypoints[0].at`.
+pub fn key(places: &[Place], k: usize) -> String {
+    let list = |place: &Place| keys_of(&place.kind).0;
+    let (own, of_place) = keys_of(&places[k].kind);
+    let before = places[..k].iter().filter(|place| list(place) == own);
+    format!("{own}[{}].{of_place}", before.count())
+}
+
 /// An exit.
 pub fn exit(given: &places::Exit) -> Result<Kind, Problem> {
     Ok(Kind::Exit(Exit {
@@ -32,6 +52,9 @@ pub fn exit(given: &places::Exit) -> Result<Kind, Problem> {
 pub fn door(given: &places::Door) -> Result<Kind, Problem> {
     let [a, b] = line(&given.line).under("line")?;
     let ahead = given.one_way.map(Vector::from);
+    if ahead == Some(Vector::zeros()) {
+        return Err(Problem::new("one_way", "must not be [0, 0]"));
+    }
     let right = ahead.map(|way| (b - a).perp(&way));
     if right.is_some_and(|right| right.abs() <= ROUNDING * ahead.unwrap_or_default().norm()) {
         let reason =

@@ -6,6 +6,7 @@ use crate::engine::journeys::{Choice, JourneyStage};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::ways::{Destination, Floor, Regions, Ways};
 use crate::scenario::build::bodies::{Maps, described};
+use crate::scenario::build::slits;
 use crate::scenario::build::ways::{Prepared, To};
 use crate::scenario::error::Problem;
 use crate::scenario::error::quote::{shown, to_centimeters};
@@ -256,7 +257,10 @@ impl Prepared<'_> {
         let open = self.ways(0.0)?;
         Ok(match open.is_open(from, to) {
             true => self.why_narrow(&self.floor(self.width)?, from, to),
-            false => "walls close it off; open them, or move one of the two".to_owned(),
+            false => match slits::apart(&self.scene.walls) {
+                Some(apart) => format!("{apart}; let them touch or overlap"),
+                None => "walls close it off; open them, or move one of the two".to_owned(),
+            },
         })
     }
 }

@@ -18,25 +18,29 @@ type Edge = [Vector; 2];
 
 /// A note on solids thinner than [`SLIT`] between two floors, or two parts of one floor.
 pub fn note(walls: &Walls) -> Option<String> {
+    let apart = apart(walls)?;
+    Some(format!(
+        "walkable_area: {apart}, and agents cannot pass there; let them touch or overlap, unless a wall stands between \
+         them"
+    ))
+}
+
+/// Where two floors, or two parts of one floor, end less than [`SLIT`] apart: the widths and the places of the first
+/// few slits; `None` without one.
+pub fn apart(walls: &Walls) -> Option<String> {
     let found = slits(walls);
     let named = found.iter().take(NAMED).map(|(middle, width)| {
         let width = format!("{:.1}", 1e3 * width);
         let width = width.trim_end_matches(".0");
         let [x, y] = [middle.x, middle.y].map(to_centimeters);
-        format!("{width} mm at ({x:.2}, {y:.2})")
+        format!("{width} mm apart at ({x:.2}, {y:.2})")
     });
     let named: Vec<String> = named.collect();
     let rest = match found.len().saturating_sub(NAMED) {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    (!found.is_empty()).then(|| {
-        format!(
-            "walkable_area: floors end {}{rest} apart, and agents cannot pass there; let them touch or overlap, unless \
-             a wall stands between them",
-            named.join(", ")
-        )
-    })
+    (!found.is_empty()).then(|| format!("floors end {}{rest}", named.join(", ")))
 }
 
 /// The middles and widths of slits, meters, from left to right.

@@ -13,6 +13,8 @@ const MARGIN: f64 = 1.0;
 const DENSITY: f64 = 1.2;
 /// The largest default density with the last color, P/m².
 const MOST_DENSITY: f64 = 10.0;
+/// The least height of a picture as a part of its width.
+const NARROWEST: f64 = 0.4;
 /// The part of the people whose preferred speeds are within the default range of speeds.
 const PART: f64 = 0.99;
 
@@ -53,6 +55,26 @@ pub fn of(given: Option<&file::View>, scene: &Scene) -> Result<View, Problem> {
         density_range: range("density_range", given.density_range, most_density(scene))?,
         speed_range: range("speed_range", given.speed_range, most_speed(scene))?,
     })
+}
+
+/// A note on the first text so far outside of the scene that pictures do not show it, unless the file says what they
+/// show.
+pub fn unseen(keys: &file::File, region: &Region) -> Option<String> {
+    if keys.view.as_ref().is_some_and(|view| view.region.is_some()) {
+        return None;
+    }
+    // Pictures of narrow scenes show more on both sides.
+    let half = (region.max - region.min) * 0.5;
+    let half = half.map(|side| side.max(NARROWEST * half.max()));
+    let middle = (region.min + region.max) * 0.5;
+    let is_out = |at: &Vector| (at - middle).abs() != (at - middle).abs().inf(&half);
+    let labels = keys.labels.iter().map(|label| Vector::from(label.at));
+    let (k, at) = labels.enumerate().find(|(_, at)| is_out(at))?;
+    Some(format!(
+        "labels[{k}].at: ({}, {}) lies outside of the scene, and pictures do not show this text; move it, or set \
+         `view.region`",
+        at.x, at.y
+    ))
 }
 
 /// 1.2 times the largest rest density of any profile, at most 10 P/m²; up to a round number.

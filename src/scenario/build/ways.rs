@@ -13,6 +13,7 @@ use crate::engine::ways::{Door, Floor, Goal as WayGoal, Rooms, WIDEST, WayError,
 use crate::scenario::build::bodies::Widest;
 use crate::scenario::build::doors;
 use crate::scenario::build::origin::{Items, Member, Origins};
+use crate::scenario::build::places;
 use crate::scenario::build::reached::{Distances, Reached};
 use crate::scenario::error::Problem;
 use crate::scenario::error::quote::shown;
@@ -235,7 +236,14 @@ impl Prepared<'_> {
         let mut widths = [WIDEST, f64::INFINITY].into_iter();
         loop {
             let widest = widths.next().unwrap_or(f64::INFINITY);
-            let rooms = Rooms::new(&areas, self.width, &doors, widest, &goals).map_err(unusable)?;
+            let rooms = Rooms::new(&areas, self.width, &doors, widest, &goals);
+            let rooms = rooms.map_err(|error| {
+                let of_doors = match error {
+                    WayError::Crossing(at) => doors::crossing(self.places, at),
+                    _ => None,
+                };
+                of_doors.unwrap_or_else(|| unusable(error))
+            })?;
             let lost = doors.iter().position(|door| !rooms.has_door(door.place));
             match lost {
                 None => return Ok(rooms),
@@ -254,14 +262,15 @@ impl Prepared<'_> {
 
     fn not_on_floor(&self, point: Vector) -> Problem {
         let lies = "lies in an obstacle or outside of the walkable area; move it onto the floor";
-        let has_point = |place: &&Place| {
+        let has_point = |place: &Place| {
             place.goals.iter().any(|goal| match *goal {
                 WayGoal::Point(p) => p == point,
                 WayGoal::Line([a, _]) => a == point,
             })
         };
-        if let Some(place) = self.places.iter().find(has_point) {
-            return Problem::new("", format!("`{}` {lies}", shown(&place.name)));
+        if let Some(k) = self.places.iter().position(has_point) {
+            let reason = format!("`{}` {lies}", shown(&self.places[k].name));
+            return Problem::new(places::key(self.places, k), reason);
         }
         let is_goal = |start: &&Start| matches!(start.to, To::Goal { goal } if goal == point);
         let of = self.starts.iter().find(is_goal).map(|start| start.member);

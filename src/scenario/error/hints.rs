@@ -52,7 +52,11 @@ fn of_text(given: &str) -> String {
         return String::new();
     };
     if unit.is_empty() {
-        return format!("; write it without quotes: {}", rounded(value));
+        let without = match number.starts_with('+') {
+            true => "the plus sign",
+            false => "quotes",
+        };
+        return format!("; write it without {without}: {}", rounded(value));
     }
     let known = UNITS.iter().find(|(names, ..)| names.contains(&unit));
     known.map_or(String::new(), |(_, name, factor)| {

@@ -2,6 +2,7 @@
 
 pub mod hints;
 pub mod kinds;
+pub mod meant;
 pub mod numbers;
 pub mod quote;
 
@@ -121,15 +122,22 @@ impl<T> Under for Result<T, Problem> {
     }
 }
 
-/// "; did you mean `x`?" if one of `known` is similar to `given`, else empty.
+/// "; did you mean `x`?" if one of `known` is similar to `given`, else empty. Case and what separates words do not
+/// count, nor do missing words at the end.
 pub fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     /// A prefix of at least this length suggests the full name.
     const STEM: usize = 4;
+    let joined = |name: &str| {
+        name.to_lowercase()
+            .replace(|c: char| !c.is_alphanumeric(), "")
+    };
     let slips = |name: &str| {
-        if given.len() >= STEM && name.starts_with(given) {
+        let rest = name.strip_prefix(given).unwrap_or_default();
+        if rest.starts_with('_') || (given.len() >= STEM && !rest.is_empty()) {
             1
         } else {
-            strsim::damerau_levenshtein(given, name)
+            let together = strsim::damerau_levenshtein(&joined(given), &joined(name));
+            strsim::damerau_levenshtein(given, name).min(together)
         }
     };
     let most = (given.len() / 4).max(1);

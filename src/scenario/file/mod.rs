@@ -2,6 +2,8 @@
 //! the keys of `--set` and their descriptions in `sandbox list --settings`: each key is described once. The keys of
 //! measurements are in [`measurements`](super::measurements).
 
+mod brackets;
+mod keyed;
 pub mod listed;
 pub mod range;
 pub mod schema;

@@ -6,8 +6,10 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use crate::scenario::error::numbers::brief;
+use crate::scenario::error::quote::shown;
 use crate::scenario::error::{Problem, Under, in_plain_words};
 use crate::scenario::file::schema::{allows, resolved, root, ways, words_of};
+use crate::scenario::file::{brackets, keyed};
 
 /// Rejects numbers out of range, empty names and lists, and missing keys. Also rejects wrong types that serde would
 /// accept (a list in place of an object) or would refuse without saying where.
@@ -19,16 +21,18 @@ fn check_value(schema: &'static Value, value: &Value) -> Result<(), Problem> {
     if value.is_null() && may_be_null(resolved(schema)) {
         return Ok(());
     }
+    let problem = brackets::refusal(schema, value);
+    problem
+        .or_else(|| keyed::refusal(schema, value, false))
+        .map_or(Ok(()), Err)?;
     let Some(schema) = chosen(schema, value) else {
         return Ok(());
     };
     check_type(schema, value)?;
+    check_list(schema, value)?;
     match value {
         Value::Number(number) => Range::of(schema).check(number.as_f64().unwrap_or(f64::NAN)),
         Value::String(text) if text.is_empty() && schema["minLength"] == 1 => {
-            Err(Problem::new("", "must not be empty"))
-        }
-        Value::Array(list) if list.is_empty() && schema["minItems"] == 1 => {
             Err(Problem::new("", "must not be empty"))
         }
         Value::Object(object) => match required(schema).find(|&key| !object.contains_key(key)) {
@@ -38,6 +42,20 @@ fn check_value(schema: &'static Value, value: &Value) -> Result<(), Problem> {
         _ => Ok(()),
     }?;
     check_parts(schema, value, check_value)
+}
+
+/// Rejects an empty list, and elements that are of several kinds.
+fn check_list(schema: &'static Value, value: &Value) -> Result<(), Problem> {
+    let Value::Array(list) = value else {
+        return Ok(());
+    };
+    if list.is_empty() && schema["minItems"] == 1 {
+        return Err(Problem::new("", "must not be empty"));
+    }
+    list.iter().enumerate().try_for_each(|(k, item)| {
+        let problem = keyed::refusal(&schema["items"], item, true);
+        problem.map_or(Ok(()), Err).under(&format!("[{k}]"))
+    })
 }
 
 /// Checks the items of a list and the values of an object, each against its schema.
@@ -90,8 +108,9 @@ fn may_be_null(schema: &Value) -> bool {
     allows(schema, "null") || ways.any(|way| allows(way, "null"))
 }
 
-/// Rejects values of another type in place of an object or a number, and in place of a described list of fixed length.
-fn check_type(schema: &Value, value: &Value) -> Result<(), Problem> {
+/// Rejects values of another type in place of an object, a number or a list, and lists of another length in place of a
+/// described list of fixed length.
+fn check_type(schema: &'static Value, value: &Value) -> Result<(), Problem> {
     let wrong = if allows(schema, "object") && !value.is_object() {
         Map::<String, Value>::deserialize(value).err()
     } else if allows(schema, "number") {
@@ -104,12 +123,26 @@ fn check_type(schema: &Value, value: &Value) -> Result<(), Problem> {
         };
         return match words_of(schema).filter(|_| !right) {
             Some(words) => Err(Problem::new("", format!("must be {words}"))),
-            None => Ok(()),
+            None if value.is_array() || !allows(schema, "array") => Ok(()),
+            None => Err(not_a_list(schema, value)),
         };
     };
     wrong.map_or(Ok(()), |error| {
         Err(Problem::new("", in_plain_words(&error.to_string())))
     })
+}
+
+/// The problem of a value in place of a list.
+fn not_a_list(schema: &'static Value, value: &Value) -> Problem {
+    let said = Vec::<Value>::deserialize(value).err();
+    let said = said.map_or(String::new(), |error| in_plain_words(&error.to_string()));
+    // The words already say this for objects.
+    let is_element = !value.is_object() && fits(&schema["items"], value);
+    let hint = match is_element {
+        true => format!("; put brackets around it: [{}]", shown(&value.to_string())),
+        false => String::new(),
+    };
+    Problem::new("", said + &hint)
 }
 
 /// The schema itself or, if it has alternatives, the one that `value` is meant for: the only one; else the first that

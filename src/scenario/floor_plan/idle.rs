@@ -1,9 +1,9 @@
-//! Polygons without effect: obstacles off the floor, and floors inside other floors.
+//! Polygons without effect: obstacles and holes off the floor, and floors inside other floors.
 
 use super::error::FloorPlanError;
 use super::shape::{SAME, Shape};
 use super::unite::{free, rings};
-use crate::engine::geometry::Area;
+use crate::engine::geometry::{Area, Ring};
 use crate::engine::math::{Vector, bounds};
 use crate::scenario::error::quote::shown;
 
@@ -59,7 +59,8 @@ impl<'a> Boxed<'a> {
     }
 }
 
-/// A note on the obstacles off the floor, and one on the floors inside other floors, if there are any.
+/// A note on the obstacles off the floor, one on such holes, and one on the floors inside other floors, if there are
+/// any.
 pub fn notes(shapes: &[Shape]) -> Result<Vec<String>, FloorPlanError> {
     if shapes.len() > MOST {
         return Ok(Vec::new());
@@ -74,12 +75,17 @@ pub fn notes(shapes: &[Shape]) -> Result<Vec<String>, FloorPlanError> {
     let mut off = Vec::new();
     for obstacle in &obstacles {
         if obstacle.is_off(&floors)? {
-            off.push(obstacle);
+            off.push(obstacle.shape.place.clone());
         }
     }
-    if let Some(first) = listed(&off) {
+    if let Some(first) = listed(off) {
         notes.push(format!(
             "{first}: obstacles wholly off the floor have no effect; move or remove them"
+        ));
+    }
+    if let Some(first) = listed(holes_off(&floors)?) {
+        notes.push(format!(
+            "{first}: holes wholly off the floor have no effect; move or remove them"
         ));
     }
     let mut inside = Vec::new();
@@ -89,13 +95,13 @@ pub fn notes(shapes: &[Shape]) -> Result<Vec<String>, FloorPlanError> {
         for (l, outer) in outer {
             // Of two equal floors, the later one adds nothing.
             if floor.is_inside(outer)? && (l < k || !outer.is_inside(floor)?) {
-                inside.push(floor);
+                inside.push(floor.shape.place.clone());
                 around.get_or_insert(outer);
                 break;
             }
         }
     }
-    if let (Some(first), Some(outer)) = (listed(&inside), around) {
+    if let (Some(first), Some(outer)) = (listed(inside), around) {
         notes.push(format!(
             "{first}: floor wholly inside other floor ({}) adds nothing; remove it, or make it an obstacle",
             shown(&outer.shape.place)
@@ -104,10 +110,50 @@ pub fn notes(shapes: &[Shape]) -> Result<Vec<String>, FloorPlanError> {
     Ok(notes)
 }
 
-/// The first polygon, and the number of the others.
-fn listed(polygons: &[&Boxed]) -> Option<String> {
-    let first = shown(&polygons.first()?.shape.place);
-    Some(match polygons.len() {
+/// The places of the holes of floors that lie wholly off all floors. A hole that lies on another floor is cut out of it.
+fn holes_off(floors: &[Boxed]) -> Result<Vec<String>, FloorPlanError> {
+    let mut holes = Vec::new();
+    for Boxed { shape, .. } in floors.iter().filter(|floor| floor.shape.rings.len() > 1) {
+        let Area {
+            exterior,
+            holes: own,
+        } = shape.area()?;
+        let is_apart = |hole: &Ring| !hole.points().iter().any(|&p| exterior.contains(p));
+        let apart = (1..).zip(&own).filter(|(_, hole)| is_apart(hole));
+        holes.extend(apart.map(|(k, _)| Shape {
+            place: format!("{}, hole {k}", shape.place),
+            ..outline(shape, k)
+        }));
+    }
+    if holes.is_empty() {
+        return Ok(Vec::new());
+    }
+    let outlines = floors.iter().map(|floor| outline(floor.shape, 0));
+    let outlines: Vec<Shape> = outlines.collect();
+    let outlines: Vec<Boxed> = outlines.iter().map(Boxed::new).collect();
+    let mut off = Vec::new();
+    for hole in &holes {
+        if Boxed::new(hole).is_off(&outlines)? {
+            off.push(hole.place.clone());
+        }
+    }
+    Ok(off)
+}
+
+/// Ring `k` of a polygon as one of its own.
+fn outline(shape: &Shape, k: usize) -> Shape {
+    Shape {
+        place: shape.place.clone(),
+        name: None,
+        rings: vec![shape.rings[k].clone()],
+        is_obstacle: shape.is_obstacle,
+    }
+}
+
+/// The first place, and the number of the others.
+fn listed(places: Vec<String>) -> Option<String> {
+    let first = shown(places.first()?);
+    Some(match places.len() {
         1 => first,
         count => format!("{first} and {} more", count - 1),
     })

@@ -1,7 +1,10 @@
 //! Points and polygons in a file.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
+use serde_json::Value;
+use serde_untagged::UntaggedEnumVisitor;
 
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
@@ -26,11 +29,30 @@ impl From<Point> for Vector {
 pub struct Ring(#[schemars(length(min = 3))] pub Vec<Point>);
 
 /// A polygon: its corners, or its rings
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(untagged)]
+#[derive(Debug, Clone, JsonSchema)]
+#[schemars(untagged)]
 pub enum Outline {
     Ring(Ring),
     Rings(#[schemars(length(min = 1))] Vec<Ring>),
+}
+
+/// Not derived: the errors of a derived untagged enum do not say what is expected.
+impl<'de> Deserialize<'de> for Outline {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        UntaggedEnumVisitor::new()
+            .expecting("a ring [[x, y], …], or a list of rings")
+            .seq(|list| {
+                let list: Vec<Value> = list.deserialize()?;
+                let is_ring = list.first().is_none_or(|first| first[0].is_number());
+                let list = Value::from(list);
+                let found = match is_ring {
+                    true => Ring::deserialize(list).map(Self::Ring),
+                    false => Deserialize::deserialize(list).map(Self::Rings),
+                };
+                found.map_err(Error::custom)
+            })
+            .deserialize(deserializer)
+    }
 }
 
 impl Outline {

@@ -20,10 +20,10 @@ use crate::scenario::build::{
     doubts, journeys, numerics, off_floor, overcrowded, periodic, profiles, slits, surroundings,
     view, ways,
 };
-use crate::scenario::error::{Problem, Under, in_plain_words};
+use crate::scenario::error::{Problem, Under, in_plain_words, meant};
 use crate::scenario::file::{File, range};
 use crate::scenario::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE};
-use crate::scenario::keys::people::People;
+use crate::scenario::keys::people::{Behavior, People};
 use crate::scenario::keys::profiles::{ProfileChoice, ProfileName};
 use crate::scenario::keys::shapes::region;
 use crate::scenario::read::draft::{Draft, Inputs};
@@ -56,16 +56,25 @@ impl Draft {
 
     /// Checks names, types and ranges.
     pub(super) fn check_keys(document: &Value) -> Result<File, Problem> {
+        let keys = Self::checked_keys(document);
+        keys.map_err(|problem| meant::clearer(problem, document))
+    }
+
+    fn checked_keys(document: &Value) -> Result<File, Problem> {
         range::check(document)?;
         // serde does not say where an error is in keys that several structs share.
-        for list in ["grids", "crowds", "sources", "entrances"] {
+        for list in ["agents", "grids", "crowds", "sources", "entrances"] {
             let items = document[list].as_array().into_iter().flatten();
             for (k, item) in items.enumerate() {
-                parsed::<People>(item).under(&format!("{list}[{k}]"))?;
+                let shared = match list {
+                    "agents" => parsed::<Behavior>(item).map(drop),
+                    _ => shared(item),
+                };
+                shared.under(&format!("{list}[{k}]"))?;
             }
         }
         if let Some(from) = document.get("from").filter(|from| from.is_object()) {
-            parsed::<People>(from).under("from")?;
+            shared(from).under("from")?;
         }
         let keys = parsed(document)?;
         range::check_names(document)?;
@@ -133,6 +142,8 @@ impl Draft {
         notes.extend(doubts::notes(keys, &scene, entering));
         notes.extend(slits::note(&scene.walls));
         notes.extend(surroundings::without_effect(keys)?);
+        let view = view::of(keys.view.as_ref(), &scene).under("view")?;
+        notes.extend(view::unseen(keys, &view.region));
         Ok(Scenario {
             name: keys.name.clone().unwrap_or_else(|| stem.into_owned()),
             description: keys.description.clone().unwrap_or_default(),
@@ -140,7 +151,7 @@ impl Draft {
             duration_secs,
             stop: keys.stop.clone(),
             measurements: keys.measurements.clone(),
-            view: view::of(keys.view.as_ref(), &scene).under("view")?,
+            view,
             labels: keys.labels.iter().map(Into::into).collect(),
             changes: Vec::new(),
             debug_agents: match &keys.debug_agents {
@@ -156,6 +167,12 @@ impl Draft {
             scene,
         })
     }
+}
+
+/// Checks the keys that groups have in common, those of behavior by themselves.
+fn shared(group: &Value) -> Result<(), Problem> {
+    parsed::<Behavior>(group)?;
+    parsed::<People>(group).map(drop)
 }
 
 /// The value of a type, or the first problem and its place.

@@ -124,12 +124,16 @@ pub fn shipped_text(name: &str) -> Result<&'static str, ScenarioError> {
     Ok(shipped.text)
 }
 
-/// Reads the text of a scenario file.
+/// Reads the text of a scenario file, or of the standard input for the path `-`.
 ///
 /// # Errors
 /// The file cannot be read, or is longer than 256 MiB.
 pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
-    input::text(path).map_err(|error| ScenarioError::Unreadable {
+    let text = match input::is_standard_input(path) {
+        true => input::standard_input(),
+        false => input::text(path),
+    };
+    text.map_err(|error| ScenarioError::Unreadable {
         file: path.display().to_string(),
         reason: unreadable_because(&error),
     })
@@ -145,7 +149,7 @@ fn unreadable_because(error: &std::io::Error) -> String {
         }
         ErrorKind::IsADirectory => format!("{said}; a scenario is a file"),
         ErrorKind::InvalidData => {
-            format!("{said}; save it as UTF-8, or continue a checkpoint with `sandbox resume`")
+            format!("{said}, or continue a checkpoint with `sandbox resume`")
         }
         ErrorKind::FileTooLarge => format!("{said}; a scenario must be shorter"),
         _ => said.to_owned(),

@@ -45,7 +45,11 @@ impl Names {
 
     /// For views of this part of the plane. Names cover walls, places and zones only if they find no other place.
     pub fn of_scene(view: &Region, scene: &Scene) -> Self {
-        Self::new(view, |apart| along_lines(scene, apart))
+        let names = Self::new(view, |apart| along_lines(scene, apart));
+        Self {
+            labels: names.labels.among_areas(scene),
+            ..names
+        }
     }
 
     /// Names that avoid the points that `avoided` returns for a distance between them, meters.
