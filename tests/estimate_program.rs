@@ -134,6 +134,35 @@ fn an_answer_is_that_of_its_runs() {
 }
 
 #[test]
+fn the_text_says_what_the_default_step_alone_would_give() {
+    let folder = tempfile::tempdir().unwrap();
+    let asked = ["--error", "time_secs=3%", "--error", "flow_per_s=8%"];
+    let found = json(&run_in(folder.path(), &estimate("out", &asked)));
+    let typed = estimate("out", &asked);
+    let typed: Vec<&str> = typed.into_iter().filter(|one| *one != "--json").collect();
+    let text = String::from_utf8(run_in(folder.path(), &typed).stdout).unwrap();
+    let rows = found["estimate"]["results"].as_array().unwrap();
+    assert_eq!(rows.len(), 2);
+    for row in rows {
+        let name = row["name"].as_str().unwrap();
+        let number = |value: &Value| value.as_f64().unwrap();
+        let of_step = number(&row["default"]["error_of_step"]);
+        let about = match of_step.abs() < number(&row["error"]) {
+            true => format!("No error of the default step of 0.02 s was found in {name} (± "),
+            false => "The default step of 0.02 s has an error of ".to_owned(),
+        };
+        let (_, said) = text
+            .split_once(&about)
+            .unwrap_or_else(|| panic!("{about}: {text}"));
+        let said = said.split(" s.").next().unwrap();
+        let runs = row["default"]["runs"].as_f64().unwrap().ceil();
+        let takes = format!(": the same ± takes {runs} runs at this step alone, ");
+        assert!(said.contains(name) || about.contains(name), "{said}");
+        assert!(said.contains(&takes), "{takes}: {said}");
+    }
+}
+
+#[test]
 fn a_result_without_spread_is_exact() {
     let folder = tempfile::tempdir().unwrap();
     let output = run_in(

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::json;
 
-use crate::common::program::{run_json, text};
+use crate::common::program::{run, run_json, stderr, text};
 use crate::common::recording::Recording;
 use sandbox::engine::math::Vector;
 use sandbox::output::labels::{AROUND, Labels, Placed, Screen};
@@ -155,4 +155,159 @@ fn labels_of_one_point_never_overlap_and_stay_inside() {
             assert!(apart);
         }
     }
+}
+
+/// The box of a text or an outline in an SVG, pixels.
+type Corners = [[f64; 2]; 2];
+
+/// The area of what two boxes have in common, square pixels.
+fn shared([low, high]: Corners, [l, h]: Corners) -> f64 {
+    let side = |k: usize| (high[k].min(h[k]) - low[k].max(l[k])).max(0.0);
+    side(0) * side(1)
+}
+
+/// The value of an attribute in the text of an element.
+fn attribute<'a>(element: &'a str, name: &str) -> &'a str {
+    let (_, rest) = element.split_once(&format!(" {name}=\"")).unwrap();
+    rest.split('"').next().unwrap()
+}
+
+/// The polylines of an SVG that have this color.
+fn lines(svg: &str, color: &str) -> Vec<Vec<[f64; 2]>> {
+    let lines = svg
+        .lines()
+        .filter(|line| line.starts_with("<polyline") && line.contains(color));
+    let point = |pair: &str| {
+        let (x, y) = pair.split_once(',').unwrap();
+        [x, y].map(|number| number.parse().unwrap())
+    };
+    let points = |line: &str| {
+        attribute(line, "points")
+            .split_whitespace()
+            .map(point)
+            .collect()
+    };
+    lines.map(points).collect()
+}
+
+/// The texts of an SVG that begin with `begin`: each with the point at which it is written, and its box.
+fn written(svg: &str, begin: &str) -> Vec<(String, [f64; 2], Corners)> {
+    let texts = svg
+        .split("<text ")
+        .skip(1)
+        .filter(|text| !text.contains("#FFFFFF"));
+    let texts = texts.filter_map(|element| {
+        let element = format!(" {element}");
+        let (_, text) = element.split_once('>').unwrap();
+        let text = text.split("</text>").next().unwrap().trim().to_owned();
+        let number = |name: &str| attribute(&element, name).parse::<f64>().unwrap();
+        let (at, size) = ([number("x"), number("y")], number("font-size"));
+        let width = 0.5 * size * text.chars().count() as f64;
+        let left = match attribute(&element, "text-anchor") {
+            "start" => at[0],
+            "middle" => at[0] - 0.5 * width,
+            _ => at[0] - width,
+        };
+        let low = match attribute(&element, "dy") {
+            "0.76em" => at[1],               // below the point
+            "-0.5ex" => at[1] - 0.76 * size, // above it
+            _ => at[1] - 0.38 * size,
+        };
+        let corners = [[left, low], [left + width, low + 0.76 * size]];
+        text.starts_with(begin).then_some((text, at, corners))
+    });
+    texts.collect()
+}
+
+/// A plan with rows of equal waiting areas, and their names.
+fn school(columns: u32, rows: u32) -> (serde_json::Value, Vec<String>) {
+    let names: Vec<String> = (1..=columns * rows).map(|k| format!("class {k}")).collect();
+    let rooms = (0..columns * rows).zip(&names).map(|(k, name)| {
+        let [x, y] = [k % columns, k / columns].map(|k| 1.0 + 8.0 * f64::from(k));
+        let area = [[x, y], [x + 6.0, y], [x + 6.0, y + 6.0], [x, y + 6.0]];
+        json!({"name": name, "area": area, "until_secs": 2})
+    });
+    let [width, height] = [columns, rows].map(|count| 8.0 * f64::from(count));
+    let floor = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
+    let shares = names.iter().map(|name| (name.clone(), json!(1)));
+    let shares: serde_json::Map<String, serde_json::Value> = shares.collect();
+    let scene = json!({
+        "name": "school", "profile": "steer+sph", "duration_secs": 5, "walkable_area": [[floor]],
+        "exits": [{"name": "e", "line": [[0, 4], [0, 5]]}], "waiting_areas": rooms.collect::<Vec<_>>(),
+        "journeys": [{"name": "j", "stages": [{"shares": shares}, "e"]}],
+        "crowds": [{"area": floor, "number": 20, "journey": "j"}]
+    });
+    (scene, names)
+}
+
+/// Asserts that each label in a picture of areas is beside its own area, or has a line to it. Returns the number of
+/// lines.
+fn assert_beside(svg: &str, names: &[String], about: &str) -> usize {
+    let all = lines(svg, "#E69F00");
+    let (areas, leaders): (Vec<_>, Vec<_>) = all.into_iter().partition(|line| line.len() > 2);
+    let corners = |ring: &Vec<[f64; 2]>| -> Corners {
+        let end =
+            |of: fn(f64, f64) -> f64| [0, 1].map(|k| ring.iter().map(|p| p[k]).reduce(of).unwrap());
+        [end(f64::min), end(f64::max)]
+    };
+    let areas: Vec<Corners> = areas.iter().map(corners).collect();
+    assert_eq!(areas.len(), names.len());
+    let mut count = 0;
+    for (text, at, around) in written(svg, "waiting area class") {
+        let number: usize = text.rsplit(' ').next().unwrap().parse().unwrap();
+        let own = areas[number - 1];
+        let distance = |p: &[f64; 2]| (p[0] - at[0]).abs().max((p[1] - at[1]).abs());
+        let mut leaders = leaders.iter();
+        if let Some(leader) = leaders.find(|line| line.iter().any(|end| distance(end) < 2.0)) {
+            let end = leader
+                .iter()
+                .max_by(|p, q| distance(p).total_cmp(&distance(q)));
+            let point = end.unwrap();
+            let is_in = |k: usize| (own[0][k] - 3.0..=own[1][k] + 3.0).contains(&point[k]);
+            assert!(is_in(0) && is_in(1), "{about}: {text}: {leader:?}, {own:?}");
+            count += 1;
+            continue;
+        }
+        let middle = [0, 1].map(|k| 0.5 * (around[0][k] + around[1][k]));
+        if (0..2).all(|k| own[0][k] < middle[k] && middle[k] < own[1][k]) {
+            continue; // in the middle of it
+        }
+        // Labels are about half of their height from their areas.
+        let reach = around[1][1] - around[0][1];
+        let wide = [around[0].map(|x| x - reach), around[1].map(|x| x + reach)];
+        let beside = shared(wide, own);
+        for (k, other) in areas.iter().enumerate().filter(|(k, _)| k + 1 != number) {
+            let is_right = beside > shared(wide, *other);
+            assert!(is_right, "{about}: {text} beside class {}", k + 1);
+        }
+    }
+    count
+}
+
+#[test]
+fn the_label_of_an_area_is_beside_it_or_has_a_line_to_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let [from, out] = ["school.json", "school.svg"].map(|name| folder.path().join(name));
+    let mut lines_to_areas = 0;
+    for (columns, rows) in [(3, 1), (1, 4), (4, 1), (3, 2)] {
+        let (scene, names) = school(columns, rows);
+        fs::write(&from, scene.to_string()).unwrap();
+        for width in ["600px", "900px", "1200px", "2400px"] {
+            let typed = [
+                "draw",
+                text(&from),
+                "--width",
+                width,
+                "--force",
+                "-o",
+                text(&out),
+            ];
+            let output = run(&typed);
+            assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+            let svg = fs::read_to_string(&out).unwrap();
+            let about = format!("{columns} × {rows}, {width}");
+            lines_to_areas += assert_beside(&svg, &names, &about);
+        }
+    }
+    assert!(lines_to_areas > 0);
 }

@@ -125,8 +125,8 @@ fn a_recording_never_replaces_a_scenario_and_must_end_in_rrd() {
         refused(
             folder.path(),
             &format!("{run} no/x.rrd"),
-            1,
-            &["--save no/x.rrd: cannot be"],
+            2,
+            &["--save no/x.rrd: the folder no does not exist: make it"],
         );
         fs::create_dir_all(folder.path().join("d.rrd")).unwrap();
         refused(

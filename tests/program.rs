@@ -35,6 +35,7 @@ mod measure_flow;
 mod measure_regions;
 mod measure_safety;
 mod messages;
+mod moments;
 mod outputs;
 mod page;
 mod paper_page;

@@ -152,9 +152,7 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "sources.0.rwos=5",
-        "--set sources.0.rwos=5: unknown key `rwos`; did you mean `rows`? Expected one of `columns`, `counted`, \
-         `every_secs`, `goal`, `goal_offset`, `jitter`, `journey`, `mass`, `max`, `min`, `motivation`, `name`, \
-         `preferred_speed`, `premovement_secs`, `profile`, `radius`, `remove_within`, `rows`, `start_secs`, `times`",
+        "--set sources.0.rwos=5: unknown key `rwos`; did you mean `rows`?",
     ],
     [
         "profile.base=sf",

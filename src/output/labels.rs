@@ -10,6 +10,10 @@ use crate::scenario::floor_plan::Label;
 
 /// Labels keep this distance from their points, points.
 pub const GAP: f64 = 4.0;
+/// A label is beside what is at most this far from it, points.
+const BESIDE: f64 = 1.5 * GAP;
+/// A label belongs clearly to the area beside it if no other one has more than this part of what it covers there.
+const CLEARLY: f64 = 0.8;
 /// If no place beside its point is free, a label is at most this many times its height away, with a line to its point.
 const FARTHEST: u32 = 7;
 /// More goals than this have no labels. More other things than this have labels only where these cover nothing, at most
@@ -82,7 +86,8 @@ pub struct Labels {
     placed: Vec<Placed>,
     /// Points that labels cover only if they find no other place nearby, by x.
     avoided: Vec<Vector>,
-    /// The corners of areas, meters: the label of one lies on another only if it finds no other place.
+    /// The corners of areas, meters: the label of one is beside another rather than its own only if it finds no other
+    /// place.
     areas: Vec<[Vector; 2]>,
 }
 
@@ -98,9 +103,16 @@ struct Candidate {
 
 impl Candidate {
     /// Whether it lies on a box with these corners.
-    fn covers(&self, [l, h]: [Vector; 2]) -> bool {
+    fn covers(&self, corners: [Vector; 2]) -> bool {
+        self.overlap(corners, 0.0) > 0.0
+    }
+
+    /// The area of what lies on a box with these corners or at most `reach` beside it, m².
+    fn overlap(&self, [l, h]: [Vector; 2], reach: f64) -> f64 {
         let [low, high] = self.around;
-        low.x < h.x && l.x < high.x && low.y < h.y && l.y < high.y
+        let reach = Vector::repeat(reach);
+        let size = (high + reach).inf(&h) - (low - reach).sup(&l);
+        size.x.max(0.0) * size.y.max(0.0)
     }
 }
 
@@ -116,8 +128,8 @@ impl Labels {
         }
     }
 
-    /// The same among the waiting areas, disks and zones of a scene: the label of one lies on another only if it finds
-    /// no other place.
+    /// The same among the waiting areas, disks and zones of a scene: the label of one lies on another, or more beside
+    /// another than beside its own, only if it finds no other place, and then with a line to its own.
     pub fn among_areas(mut self, scene: &Scene) -> Self {
         let places = scene.journeys.places.iter();
         let is_area = |place: &&Place| matches!(place.kind, Kind::Waiting(_) | Kind::Disk { .. });
@@ -150,8 +162,13 @@ impl Labels {
         });
         let candidates = candidates.map(|(spot, distance)| self.candidate(width, spot, distance));
         let free: Vec<Candidate> = candidates.filter(|one| self.is_free(one)).collect();
-        let others = self.other_areas(spots);
-        let is_astray = |one: &Candidate| others.iter().any(|area| one.covers(*area));
+        let (own, others) = self.areas_of(spots);
+        let reach = self.screen.meters(BESIDE);
+        let is_astray = |one: &Candidate| {
+            let beside = CLEARLY * own.map_or(0.0, |own| one.overlap(own, reach));
+            let of_other = others.iter().map(|area| one.overlap(*area, reach));
+            one.spot.1 != [0, 0] && of_other.fold(0.0, f64::max) > beside
+        };
         let best = |all: &[&Candidate]| -> Option<Candidate> {
             let empty = all.iter().find(|one| self.is_empty(one));
             let found = empty.or(all.first().filter(|_| !is_one_of_many));
@@ -165,7 +182,8 @@ impl Labels {
         let astray = is_astray(&found).then(|| {
             // Into its own area, so that the line is seen.
             let back = Vector::from(side.map(f64::from)) * self.screen.meters(2.0 * GAP);
-            point - back
+            let inside = point - back;
+            own.map_or(inside, |[low, high]| inside.sup(&low).inf(&high))
         });
         self.placed.push(Placed {
             text,
@@ -188,9 +206,8 @@ impl Labels {
         (self.screen.width)(&brief(&label.text)) <= room && self.add(&label.text, color, &spots)
     }
 
-    /// The areas on which the label with these spots should not lie, if it is that of an area: all others but those
-    /// around it.
-    fn other_areas(&self, spots: &[Spot]) -> Vec<[Vector; 2]> {
+    /// The area whose label has these spots, and the other areas except those around it; nothing for other labels.
+    fn areas_of(&self, spots: &[Spot]) -> (Option<[Vector; 2]>, Vec<[Vector; 2]>) {
         /// Corners are that near to their areas, meters.
         const SAME: f64 = 1e-6;
         let reach = Vector::repeat(SAME);
@@ -198,15 +215,13 @@ impl Labels {
             let (low, high) = (low + reach, high - reach);
             l == l.inf(&low) && h == h.sup(&high)
         };
-        let Some(own) = bounds(spots.iter().map(|spot| spot.0)) else {
-            return Vec::new();
-        };
-        let is_own = |area: &[Vector; 2]| holds(*area, own) && holds(own, *area);
-        if !self.areas.iter().any(is_own) {
-            return Vec::new();
-        }
+        let own = bounds(spots.iter().map(|spot| spot.0)).filter(|own| {
+            let mut areas = self.areas.iter();
+            areas.any(|area| holds(*area, *own) && holds(*own, *area))
+        });
         let areas = self.areas.iter().copied();
-        areas.filter(|area| !holds(*area, own)).collect()
+        let others = areas.filter(|area| own.is_some_and(|own| !holds(*area, own)));
+        (own, others.collect())
     }
 
     /// A place beside a point; above and below it, a label that would reach beyond the screen is shifted along it.
@@ -219,8 +234,9 @@ impl Labels {
         let mut at = spot.0 + side * screen.meters(distance);
         if spot.1[0] == 0 && spot.1[1] != 0 {
             let [least, most] = screen.inside.map(|end| end.x);
-            let shifted = at.x.min(most - half.x).max(least + half.x);
-            if (shifted - at.x).abs() < half.x {
+            let half = half.x * (1.0 + 1e-9); // rounding does not put it beyond the screen
+            let shifted = at.x.min(most - half).max(least + half);
+            if (shifted - at.x).abs() < half {
                 at.x = shifted;
             }
         }

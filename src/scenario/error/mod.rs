@@ -154,12 +154,15 @@ pub fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> 
         .unwrap_or_default()
 }
 
-/// Rewrites a message of serde without Rust terms, and adds a suggestion for unknown names.
+/// Rewrites a message of serde without Rust terms, and adds a suggestion for unknown names: without a long list of all.
 pub fn in_plain_words(said: &str) -> String {
+    /// Longer lists of names hide the suggestion.
+    const LISTED: usize = 10;
     let (head, given, tail) = around_the_given(said);
     let is_name = said.starts_with("unknown field") || said.starts_with("unknown variant");
+    let known = || tail.split('`').skip(2).step_by(2);
     let near = match is_name {
-        true => suggestion(given, tail.split('`').skip(2).step_by(2)),
+        true => suggestion(given, known()),
         false => String::new(),
     };
     let plain = |words: &str| {
@@ -169,6 +172,7 @@ pub fn in_plain_words(said: &str) -> String {
     };
     let tail = match near.is_empty() {
         true => plain(tail),
+        false if known().count() > LISTED => format!("`{near}"),
         false => plain(tail).replacen(", expected", &format!("{near} Expected"), 1),
     };
     let hint = hints::of_type(said, given);

@@ -17,7 +17,11 @@ impl Kinds {
     /// Those of a schema, or of its only alternative that has some; `None` for other schemas.
     fn of(schema: &'static Value) -> Option<Self> {
         let schema = resolved(schema);
-        let own = schema["oneOf"].as_array().and_then(|all| {
+        // Beside a type, they are conditions on an object.
+        let all = schema["oneOf"]
+            .as_array()
+            .filter(|_| schema["type"].is_null());
+        let own = all.and_then(|all| {
             let keys = all.iter().map(|way| {
                 let mut keys = way["properties"].as_object()?.iter();
                 let (key, value) = keys.next().filter(|_| keys.len() == 0)?;
