@@ -213,8 +213,8 @@ fn an_existing_file_is_replaced_only_with_force() {
             "--save",
             nowhere.to_str().unwrap(),
         ],
-        1,
-        &["folder.rrd"],
+        2,
+        &["folder.rrd", "does not exist: make it"],
     );
 }
 
@@ -263,8 +263,8 @@ fn an_impossible_trajectory_is_refused_before_anything_is_written() {
     );
     refused(
         &["evacuation", "--trajectory", &nowhere],
-        1,
-        &["folder.txt"],
+        2,
+        &["folder.txt", "does not exist: make it"],
     );
 }
 

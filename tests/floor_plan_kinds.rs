@@ -119,10 +119,10 @@ fn holes_off_the_floor_are_noted() {
     let [off, far] = ["(20 0, 22 0, 22 2, 20 2)", "(0 50, 2 50, 2 52, 0 52)"];
     let other = "POLYGON ((20 0, 29 0, 29 9, 20 9))";
     for (plan, notes) in [
-        (format!("{hall}, {off})"), vec![note("line 1, hole 1")]),
+        (format!("{hall}, {off})"), vec![note("hole 1")]),
         (
             format!("{hall}, (1 1, 2 1, 2 2), {off}, {far})"),
-            vec![note("line 1, hole 2 and 1 more")],
+            vec![note("hole 2 and 1 more")],
         ),
         // It is cut out of another floor.
         (format!("{hall}, {off})\n{other}"), vec![]),
@@ -131,7 +131,7 @@ fn holes_off_the_floor_are_noted() {
         // Beside the floor, along its edge.
         (
             format!("{hall}, (9 1, 10 1, 10 2, 9 2))"),
-            vec![note("line 1, hole 1")],
+            vec![note("hole 1")],
         ),
     ] {
         assert_eq!(floor_plan::parse(&plan).unwrap().notes, notes, "{plan}");

@@ -23,7 +23,9 @@ pub fn clearer(problem: Problem, document: &Value) -> Problem {
     let (parent, key) = problem.path.rsplit_once('.').unwrap_or(("", &problem.path));
     let reason = match (key, value) {
         ("goal", Value::String(name)) => named(document, name),
-        ("line", Value::Array(points)) => not_two(parent, points.len()),
+        ("line", Value::Array(points)) if points.iter().all(Value::is_array) => {
+            not_two(parent, points.len())
+        }
         _ => None,
     };
     match reason {
@@ -70,5 +72,10 @@ fn not_two(parent: &str, points: usize) -> Option<String> {
         _ if ["exits", "entrances", "doors"].contains(&list) => format!("; split it into {list}"),
         _ => "; give its first and its last point".to_owned(),
     };
-    (points != 2).then(|| format!("a line has two ends, not {points} points{split}"))
+    let given = match points {
+        2 => return None,
+        1 => "one point".to_owned(),
+        count => format!("{count} points"),
+    };
+    Some(format!("a line has two ends, not {given}{split}"))
 }

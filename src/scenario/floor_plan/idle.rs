@@ -1,7 +1,7 @@
 //! Polygons without effect: obstacles and holes off the floor, and floors inside other floors.
 
 use super::error::FloorPlanError;
-use super::shape::{SAME, Shape};
+use super::shape::{SAME, Shape, part};
 use super::unite::{free, rings};
 use crate::engine::geometry::{Area, Ring};
 use crate::engine::math::{Vector, bounds};
@@ -121,7 +121,7 @@ fn holes_off(floors: &[Boxed]) -> Result<Vec<String>, FloorPlanError> {
         let is_apart = |hole: &Ring| !hole.points().iter().any(|&p| exterior.contains(p));
         let apart = (1..).zip(&own).filter(|(_, hole)| is_apart(hole));
         holes.extend(apart.map(|(k, _)| Shape {
-            place: format!("{}, hole {k}", shape.place),
+            place: part(&shape.place, "hole", k - 1),
             ..outline(shape, k)
         }));
     }
