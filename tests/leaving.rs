@@ -76,8 +76,8 @@ fn a_waiting_area_without_room_for_all_gets_a_note() {
         notes(&document)
     };
     assert_eq!(small(10), [""; 0]);
-    let said = "waiting_areas: 11 agents are sent to `pit`, 2.0 m², where bodies touch from 10 on; give it more room, or \
-                send fewer";
+    let said = "waiting_areas: 11 agents are sent to `pit`, 2.0 m², where bodies touch from 10 on; give it more room, \
+                or send fewer";
     assert_eq!(small(11), [said]);
 }
 

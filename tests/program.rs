@@ -39,6 +39,7 @@ mod moments;
 mod outputs;
 mod page;
 mod paper_page;
+mod paper_tables;
 mod plot;
 mod read;
 mod read_hdf5;

@@ -194,7 +194,7 @@ fn settings(options: &SuiteOptions) -> Result<Vec<Setting>, Failure> {
     Ok(settings)
 }
 
-/// The status file beside the document of `--update`, if there is one. Only results of the whole suite, as it is, belong
+/// The status file beside the document of `--update`, if there is one. Only results of the whole suite as it is belong
 /// into a document, and of all profiles unless there is a status.
 fn status(asked: &Asked, options: &SuiteOptions) -> Result<Option<PathBuf>, Failure> {
     let Some(document) = options.cases.document.update.as_deref() else {

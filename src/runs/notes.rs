@@ -101,7 +101,7 @@ fn idle_pushes(run: &Run) -> Vec<String> {
     idle.map(|event| note(&event.name)).collect()
 }
 
-/// A warning if the time step is longer than the stability limit of a crowd at rest, if that is known for the integrator.
+/// A warning if the time step is longer than the stability limit of a crowd at rest, where the integrator's is known.
 pub fn of_step(scene: &Scene) -> Option<String> {
     let scheme = Scheme::of(scene.integrator)?;
     let step = scene.clock.time_step();

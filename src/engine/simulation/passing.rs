@@ -22,7 +22,7 @@ pub const WALKS_ON: f64 = 6.0;
 pub const BEFORE_WALLS: f64 = 1.0;
 /// The goal of the body is this far behind the end of its way, meters.
 const GOAL_BEHIND: f64 = 5.0;
-/// Agents this near to a line stand on it, meters: far more than rounding, far less than where closed exits stop agents.
+/// Agents this near to a line stand on it, meters: more than rounding, less than where closed exits stop agents.
 const ON_LINE: f64 = 1e-6;
 /// A body that has not reached the end of its way is removed after this time, seconds.
 const OUTSIDE_SECS: f64 = 30.0;

@@ -199,7 +199,8 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         rows: json!(rows),
         notes: vec![format!(
             "Stages are medians, in ms per frame; every repeat takes the same frames. Shipped scenarios, \
-             with these profiles: {stretches}. Streams: {agents} agents from {from:.1} to {:.1} s, half of them walking to the right and \
+             with these profiles: {stretches}. Streams: {agents} agents from {from:.1} to {:.1} s, half of them \
+             walking to the right and \
              half to the left. Hall: {} pillars stand between the agents, at 4.7 P/m², and their goal; from {from:.1} \
              to {:.1} s, without and with a walking law. Office floor: {} people leave {} rooms from {:.1} to {:.1} s, \
              by the shortest or by the quickest ways. Swaying crowd: questions/sway.json from {} to {} s; with `sph` \

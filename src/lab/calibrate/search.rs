@@ -178,7 +178,7 @@ impl Stages<'_> {
         }))
     }
 
-    /// The parameters that are searched: those that are not frozen and change a value by `drop_below`. A parameter whose
+    /// The parameters that are searched: not frozen, and changing a value by `drop_below`. A parameter whose
     /// effects could not be computed is searched, too.
     fn searched(&self, screened: Option<&Screened>) -> Result<Vec<usize>, LabError> {
         let of = self.evaluator.calibration;

@@ -86,7 +86,8 @@ pub fn compared(answers: [(&str, &Value); 2]) -> Result<Compared, LabError> {
     let (a, b) = (kept(first)?, kept(second)?);
     if a.confidence != b.confidence {
         let reason = format!(
-            "{} and {}: intervals of {} and {} % cannot be compared; estimate one of them again with the other --confidence",
+            "{} and {}: intervals of {} and {} % cannot be compared; estimate one of them again with the \
+             other --confidence",
             first.0,
             second.0,
             100.0 * a.confidence,

@@ -62,7 +62,8 @@ pub fn estimated(answers: &Answers) -> Result<String, LabError> {
     let [kept, undecided, missed] = counts;
     Ok(format!(
         "{}\n{kept} of {} values are inside their bands with their whole interval, {missed} outside, {undecided} \
-         neither: {BANDS_IN_WORDS}. The paper's values are those of its time step, ours of the limit of fine steps. {ABOUT}\n",
+         neither: {BANDS_IN_WORDS}. The paper's values are those of its time step, ours of the limit of fine steps. \
+         {ABOUT}\n",
         columns.table().markdown(),
         counts.iter().sum::<usize>(),
     ))

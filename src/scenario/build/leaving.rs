@@ -54,8 +54,8 @@ fn at_once(scene: &Scene) -> Option<String> {
     let (radius, name) = (first.removal_radius.unwrap_or_default(), shown(&first.name));
     let (count, all) = (there.count(), scene.agents.len());
     Some(format!(
-        "{name}: {count} of the {all} agents at the start leave at once: they are within `remove_within`, {radius} m, of \
-         their goal"
+        "{name}: {count} of the {all} agents at the start leave at once: they are within `remove_within`, {radius} m, \
+         of their goal"
     ))
 }
 
@@ -79,8 +79,8 @@ fn overfull(scene: &Scene) -> Vec<String> {
         let most = (TOUCHING * size).floor();
         (people as f64 > most).then(|| {
             format!(
-                "waiting_areas: {people} agents are sent to `{}`, {size:.1} m², where bodies touch from {most} on; give \
-                 it more room, or send fewer",
+                "waiting_areas: {people} agents are sent to `{}`, {size:.1} m², where bodies touch from {most} on; \
+                 give it more room, or send fewer",
                 shown(&place.name)
             )
         })
@@ -100,8 +100,8 @@ fn overrun(scene: &Scene) -> Vec<String> {
         let repeats = source.times != Some(1);
         (repeats && way < width).then(|| {
             format!(
-                "sources[{k}].every_secs: agents walk {} m in {} s, less than the width of a body: they enter on top of \
-                 those before; `entrances` wait for room",
+                "sources[{k}].every_secs: agents walk {} m in {} s, less than the width of a body: they enter on top \
+                 of those before; `entrances` wait for room",
                 brief(way),
                 brief(source.every)
             )

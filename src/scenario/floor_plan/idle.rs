@@ -110,7 +110,7 @@ pub fn notes(shapes: &[Shape]) -> Result<Vec<String>, FloorPlanError> {
     Ok(notes)
 }
 
-/// The places of the holes of floors that lie wholly off all floors. A hole that lies on another floor is cut out of it.
+/// The places of the holes of floors that lie wholly off all floors. A hole on another floor is cut out of it.
 fn holes_off(floors: &[Boxed]) -> Result<Vec<String>, FloorPlanError> {
     let mut holes = Vec::new();
     for Boxed { shape, .. } in floors.iter().filter(|floor| floor.shape.rings.len() > 1) {
