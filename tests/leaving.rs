@@ -32,7 +32,7 @@ fn a_run_that_waits_for_an_empty_floor_that_no_agent_can_leave_gets_a_note() {
         "{said:?}"
     );
     assert_eq!(measured(document.clone()).arrived, 0);
-    document["remove_within"] = json!(0.5);
+    document["crowds"][0]["remove_within"] = json!(0.5);
     let said = notes(&document);
     assert!(
         !said.iter().any(|note| note.contains("no agent can leave")),
@@ -45,7 +45,7 @@ fn agents_that_start_where_they_leave_get_a_note_with_their_number() {
     let mut document = room(20);
     document["exits"] = json!([]);
     document["goal"] = json!([6, 4]);
-    document["remove_within"] = json!(2.5);
+    document["crowds"][0]["remove_within"] = json!(2.5);
     let said = notes(&document);
     let note = said
         .iter()

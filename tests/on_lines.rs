@@ -158,7 +158,7 @@ fn a_limited_exit_is_the_cause_of_being_stuck_before_it() {
         let said = measured(document);
         let wait = 1.0 / rate;
         let cause = format!(
-            "the exit `check` lets one person pass every {wait:.0} s (`most_per_sec` {rate})"
+            "the exit `check` lets one person pass every {wait:.1} s (`most_per_sec` {rate})"
         );
         let causes: Vec<&str> = said.stuck_because.iter().map(|one| &*one.cause).collect();
         assert_eq!(causes, [cause]);
