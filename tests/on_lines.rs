@@ -206,3 +206,26 @@ fn an_exit_on_the_line_of_another_gets_a_note() {
     assert_eq!(doubled.len(), 1, "{notes:?}");
     assert!(doubled[0].starts_with("exits[1].line: `b` lies on the line of `a`: "));
 }
+
+#[test]
+fn an_exit_that_was_closed_until_the_end_is_the_cause_of_being_stuck_before_it() {
+    for (closed, said) in [
+        (json!([[0, 60]]), "the exit `east` was closed until 60 s"),
+        (json!([[6, 59]]), "the exit `east` was closed until 59 s"),
+        (json!([[6, 61]]), "the exit `east` is closed until 61 s"),
+    ] {
+        let document = json!({
+            "profile": "steer+sph", "duration_secs": 60, "motivation": 1,
+            "walkable_area": [[[[0, 0], [12, 0], [12, 10], [0, 10]]]],
+            "exits": [{"name": "east", "line": [[12, 4], [12, 6]], "closed_secs": closed}],
+            "crowds": [{"area": [[1, 1], [6, 1], [6, 9], [1, 9]], "number": 40}],
+        });
+        let summary = measured(document);
+        let causes: Vec<&str> = summary
+            .stuck_because
+            .iter()
+            .map(|one| &*one.cause)
+            .collect();
+        assert_eq!(causes, [said]);
+    }
+}

@@ -262,3 +262,61 @@ fn bad_input_is_refused_with_exit_code_2() {
     let help = run(folder.path(), &["sweep", "--help"]).1;
     assert!(help.contains("sandbox sweep study.json --shard 2/8"));
 }
+
+#[test]
+fn a_mean_of_the_runs_that_have_a_value_says_how_many_they_are() {
+    let (folder, _) = folder(
+        r#"{"scenario": "part.json", "seeds": 6, "measurements": [{"egress": {}}],
+            "grid": {"duration_secs": [8.2, 30]}}"#,
+    );
+    let part = r#"{"profile": "steer+sph", "motivation": 1, "duration_secs": 8.2,
+        "walkable_area": [[[[0, 0], [12, 0], [12, 10], [0, 10]]]],
+        "exits": [{"name": "east", "line": [[12, 4], [12, 6]]}],
+        "crowds": [{"area": [[1, 1], [6, 1], [6, 9], [1, 9]], "number": 10},
+                   {"area": [[7, 1], [10, 1], [10, 9], [7, 9]], "number": 10}],
+        "stop": {"when_empty": true}}"#;
+    std::fs::write(folder.path().join("part.json"), part).unwrap();
+    let (code, stdout, stderr) = run(folder.path(), &["sweep", "study.json", "--out", "out"]);
+    assert_eq!(code, Some(0), "{stderr}");
+    let rows = rows(&folder.path().join("out/study.csv"));
+    let short = &rows[..6];
+    let times = |name: &str| -> Vec<f64> {
+        let values = column(short, name).into_iter();
+        values.filter_map(|value| value.parse().ok()).collect()
+    };
+    let [all, most] = ["t100_secs", "t95_secs"].map(times);
+    assert!(
+        !all.is_empty() && all.len() < most.len() && most.len() < 6,
+        "{all:?} {most:?}"
+    );
+    for times in [&all, &most] {
+        assert!(
+            stdout.contains(&format!(" [{} of 6]", times.len())),
+            "{stdout}"
+        );
+    }
+    assert!(stdout.contains("[n of m]: the mean of the n runs that have a value"));
+    // The longer runs all end.
+    assert_eq!(stdout.matches(" of 6]").count(), 2, "{stdout}");
+    // So does the report.
+    let (code, _, stderr) = run(
+        folder.path(),
+        &[
+            "report",
+            "study.json",
+            "--results",
+            "out",
+            "-o",
+            "study.html",
+        ],
+    );
+    assert_eq!(code, Some(0), "{stderr}");
+    let html = std::fs::read_to_string(folder.path().join("study.html")).unwrap();
+    let (_, row) = html.split_once("all out [s]</td>").unwrap();
+    let (row, _) = row.split_once("</tr>").unwrap();
+    assert_eq!(
+        row.matches(&format!("[{} of 6]", all.len())).count(),
+        1,
+        "{row}"
+    );
+}

@@ -58,7 +58,8 @@ pub fn of_study(gathered: &Gathered, [command, report]: [&str; 2]) -> Result<Doc
     let description = study.document["description"].as_str().unwrap_or_default();
     let text = format!(
         "{finished} of {} runs are finished: {} combination(s) of settings, each with up to {} seeds. Values are means \
-         over the seeds ± half their 95 % confidence intervals (Student's t), then the least and the largest value.",
+         over the seeds ± half their 95 % confidence intervals (Student's t), then the least and the largest value. \
+         [n of m]: the mean of the n runs that have a value; with the others it would be another one.",
         study.cells.len(),
         combinations.len(),
         study.seeds
@@ -159,7 +160,13 @@ fn side_by_side(numbers: &[Number], combinations: &[Combination], names: &[Strin
     for (one, name) in combinations.iter().zip(names) {
         columns = columns.column(&format!("{name} ({} runs)", one.results.len()), |number| {
             let values = one.results.iter().filter_map(|run| (number.value)(run));
-            spread(&values.collect::<Vec<f64>>())
+            let values: Vec<f64> = values.collect();
+            let mean = spread(&values)?;
+            let (count, all) = (values.len(), one.results.len());
+            Some(match count < all {
+                true => format!("{mean} [{count} of {all}]"),
+                false => mean,
+            })
         });
     }
     columns.table()

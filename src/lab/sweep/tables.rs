@@ -104,10 +104,20 @@ impl Gathered<'_> {
     pub fn text(&self) -> String {
         let rows = self.combinations();
         let mut columns = combined(&rows, &self.study.short_axes(), short);
+        let mut about =
+            "± is half the 95 % confidence interval of the mean over seeds (Student's t)."
+                .to_owned();
         for (k, name) in self.numbers().iter().enumerate() {
-            columns = columns.fixed(name, 3, |row| confident(row, k));
+            if rows.iter().all(|row| lacking(row, k).is_none()) {
+                columns = columns.fixed(name, 3, |row| confident(row, k));
+                continue;
+            }
+            columns = columns.column(name, |row| {
+                let mean = table::Cell::from(confident(row, k)).fixed(3);
+                mean + &lacking(row, k).unwrap_or_default()
+            });
+            about = format!("{}{LACKING}", about.trim_end_matches(LACKING));
         }
-        let about = "± is half the 95 % confidence interval of the mean over seeds (Student's t).";
         format!("{}\n{about}\n", columns.table().text())
     }
 
@@ -138,6 +148,16 @@ impl Gathered<'_> {
 /// The `k`-th mean with half its confidence interval.
 fn confident(row: &Combination, k: usize) -> Option<table::Cell> {
     row.means[k].map(|mean| table::Cell::Spread(mean.mean, mean.interval_95()))
+}
+
+/// What a number of runs after a mean says.
+const LACKING: &str = " [n of m]: the mean of the n runs that have a value, such as those that all people leave; \
+                           with the others it would be another one.";
+
+/// How many of the finished runs have the `k`-th value, if some do not.
+fn lacking(row: &Combination, k: usize) -> Option<String> {
+    let (count, all) = (row.means[k].map_or(0, |mean| mean.count), row.results.len());
+    (count < all).then(|| format!(" [{count} of {all}]"))
 }
 
 /// The varied settings and the number of finished runs.

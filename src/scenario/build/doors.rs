@@ -79,21 +79,22 @@ pub fn check(places: &[Place], floor: &Floor) -> Result<(), Problem> {
 
 /// Refuses a door on the line of another door or of an exit.
 fn check_apart(places: &[Place]) -> Result<(), Problem> {
-    for (k, door, other) in on_one_line(places).filter(|(_, one, _)| is_door(one)) {
-        let (name, other_name) = (shown(&door.name), shown(&other.name));
-        let reason = match is_door(other) {
-            true => format!(
-                "`{name}` lies on the line of `{other_name}`: draw one door, with `one_way` and `closed_secs`, or move \
+    let mut doors = on_one_line(places).filter(|(_, one, _)| is_door(one));
+    let Some((k, door, other)) = doors.next() else {
+        return Ok(());
+    };
+    let (name, other_name) = (shown(&door.name), shown(&other.name));
+    let reason = match is_door(other) {
+        true => format!(
+            "`{name}` lies on the line of `{other_name}`: draw one door, with `one_way` and `closed_secs`, or move \
                  one of them"
-            ),
-            false => format!(
-                "`{name}` lies on the line of the exit `{other_name}`, where people leave whatever the door says: give \
+        ),
+        false => format!(
+            "`{name}` lies on the line of the exit `{other_name}`, where people leave whatever the door says: give \
                  the exit the `closed_secs`, or move one of them"
-            ),
-        };
-        return Err(Problem::new(format!("doors[{k}].line"), reason));
-    }
-    Ok(())
+        ),
+    };
+    Err(Problem::new(format!("doors[{k}].line"), reason))
 }
 
 /// Notes on exits on the lines of other exits.

@@ -133,10 +133,10 @@ fn unreachable(simulation: &Simulation, p: Vector, aim: Aim) -> Option<String> {
         Aim::Place(number) => {
             let place = &scene.journeys.places[usize::from(number)];
             let (kind, name) = (place.kind.name(), shown(&place.name));
-            let state = simulation.progress().places.get(usize::from(number));
-            if matches!(place.kind, Kind::Exit(_)) && state.is_some_and(|state| !state.open) {
-                let until = until(simulation, number);
-                return Some(format!("the exit `{name}` is closed{until}"));
+            if matches!(place.kind, Kind::Exit(_))
+                && let Some(closed) = closed(simulation, number)
+            {
+                return Some(format!("the exit `{name}` {closed}"));
             }
             (!has_way).then(|| format!("no way leads to the {kind} `{name}`"))
         }
@@ -154,13 +154,9 @@ fn unreachable(simulation: &Simulation, p: Vector, aim: Aim) -> Option<String> {
 fn shut(simulation: &Simulation, doors: Vec<(u16, Vector)>) -> Option<String> {
     let shut = |(number, before): (u16, Vector)| {
         let place = &simulation.scene().journeys.places[usize::from(number)];
-        let (name, state) = (
-            shown(&place.name),
-            simulation.progress().places.get(usize::from(number)),
-        );
-        if state.is_some_and(|state| !state.open) {
-            let until = until(simulation, number);
-            return Some(format!("the door `{name}` is closed{until}"));
+        let name = shown(&place.name);
+        if let Some(closed) = closed(simulation, number) {
+            return Some(format!("the door `{name}` {closed}"));
         }
         let Kind::Door(Door { line, one_way }) = place.kind else {
             return None;
@@ -169,6 +165,23 @@ fn shut(simulation: &Simulation, doors: Vec<(u16, Vector)>) -> Option<String> {
         is_against.then(|| format!("the door `{name}` lets people pass only the other way"))
     };
     doors.into_iter().find_map(shut)
+}
+
+/// That an exit or door is closed, or was until a short time ago; `None` if it was open for longer.
+fn closed(simulation: &Simulation, number: u16) -> Option<String> {
+    let state = simulation.progress().places.get(usize::from(number))?;
+    if !state.open {
+        return Some(format!("is closed{}", until(simulation, number)));
+    }
+    let now = simulation.frame().clock.time();
+    let changes = simulation.scene().journeys.changes.iter();
+    let before = changes.filter(|change| change.place == number && change.at <= now);
+    let mut latest = before.rev();
+    let (opened, closed) = (latest.next()?, latest.next()?);
+    let is_recent = opened.kind == ChangeKind::Open
+        && closed.kind == ChangeKind::Close
+        && now - opened.at < 0.5 * STUCK_AFTER;
+    is_recent.then(|| format!("was closed until {} s", opened.at))
 }
 
 /// Until when a closed exit or door is closed, with a blank before it; empty if it does not open again.
