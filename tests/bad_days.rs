@@ -20,8 +20,13 @@ fn with_file_limit(blocks: u32, arguments: &[&str]) -> Output {
 
 /// Expects exit code 1, and returns the only error line on stderr, which must be the last line.
 fn only_error(arguments: &[&str], output: &Output) -> String {
+    only_error_of(1, arguments, output)
+}
+
+/// The same with another exit code.
+fn only_error_of(code: i32, arguments: &[&str], output: &Output) -> String {
     let stderr = stderr(output);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
     let mut lines = stderr.lines().filter(|line| !line.starts_with("note: "));
     let errors: Vec<&str> = lines
         .by_ref()
@@ -74,7 +79,9 @@ fn an_unwritable_path_is_named_before_anything_is_computed() {
         for path in [&below, if is_folder { &file } else { &missing }] {
             let arguments = [arguments, &[text(path)]].concat();
             let output = program::run(&arguments);
-            let said = only_error(&arguments, &output);
+            // A folder that does not exist is a mistake in the command.
+            let code = if *path == missing { 2 } else { 1 };
+            let said = only_error_of(code, &arguments, &output);
             assert!(said.contains(text(path)), "{said}");
             assert!(output.stdout.is_empty(), "{arguments:?}");
         }

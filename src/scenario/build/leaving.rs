@@ -53,7 +53,8 @@ fn at_once(scene: &Scene) -> Option<String> {
     let first = group(scene, there.peek()?.group);
     let (radius, name) = (first.removal_radius.unwrap_or_default(), shown(&first.name));
     let (count, all) = (there.count(), scene.agents.len());
-    Some(format!(
+    // A single agent is put there on purpose.
+    (count > 1).then(|| format!(
         "{name}: {count} of the {all} agents at the start leave at once: they are within `remove_within`, {radius} m, \
          of their goal"
     ))

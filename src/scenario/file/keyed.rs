@@ -71,7 +71,7 @@ impl Kinds {
             [one] => {
                 let other = given.keys().find(|key| *key != one)?;
                 let inner = resolved(self.find(one)?);
-                let is_inner = ways(inner).map_or(false, |mut ways| {
+                let is_inner = ways(inner).is_some_and(|mut ways| {
                     ways.any(|way| !resolved(way)["properties"][other].is_null())
                 });
                 let (one, other) = (shown(one), shown(other));
