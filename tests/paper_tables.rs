@@ -1,5 +1,5 @@
-//! Tables 1 and 2 as docs/tables/reproduction.md has them: the bands follow from the spread over seeds, and the verdicts
-//! from the bands.
+//! Tables 1 and 2 as docs/tables/reproduction.md has them: the bands follow from the spread over seeds, and the
+//! verdicts from the bands.
 
 use std::fs;
 

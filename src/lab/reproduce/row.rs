@@ -12,7 +12,7 @@ use crate::runs::store::Store;
 
 /// The bands of density, its deviation and flow around the paper's values, the same for all rows: where one more run
 /// lies with 95 % beside the mean of ten, t √(1 + 1/10) s. s is the standard deviation over seeds of Table 1, pooled
-/// over its rows: 0.74 % of the density, 0.019 P/m², 4.3 % of the flow. The paper gives one value per row, and no spread.
+/// over its rows: 0.74 % of the density, 0.019 P/m², 4.3 % of the flow. The paper gives one value per row.
 pub(super) const BANDS: [Band; 3] = [
     Band::Relative(0.015),
     Band::Absolute(0.04),
