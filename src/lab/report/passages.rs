@@ -93,8 +93,8 @@ impl Passages {
             .fixed("P/(m s)", 2, |row| row.flow)
             .table();
         let caption = "Free width: the length of the line without walls on it. Open: by timetable and events. \
-                       At most: the limit `most_per_sec` of an exit. P/(m s): the people after the first one, per meter of free width and second between the first and the \
-                       last one.";
+                       At most: the limit `most_per_sec` of an exit. P/(m s): the people after the first one, \
+                       per meter of free width and second between the first and the last one.";
         (!rows.is_empty()).then(|| Block::Table(table, caption.to_owned()))
     }
 }
