@@ -11,7 +11,7 @@
 //! cargo run --release --example paper -- STATE.json          # every term of every agent
 //! ```
 //!
-//! In the folder `paper/` are the state of a crowd, vectors and walls, the evacuation, and files: no equations.
+//! The folder `paper/` has the rest: bodies (§5.6), the state of a crowd, vectors and walls, the evacuation, and files.
 
 #[path = "paper/crowd.rs"]
 mod crowd;
@@ -28,7 +28,7 @@ pub use crowd::{Agent, Behavior, Crowd, HiddenRegion, Navigation, Profile};
 pub use plane::{Vector, Wall};
 use rand::RngCore;
 
-// §3.3 Computing density, pressure, and forces. Eqs. 4 and 6 are parts of Eqs. 9 and 11.
+// §3.3 Computing density, pressure, and forces. Eqs. 1 and 3 are the general forms of Eq. 2 and of Eqs. 4, 6 and 7.
 const GAS_CONSTANT: f64 = 200.0; // k (§5.5)
 
 /// Eq. 5: p_i = k (ρ_i − ρ_i⁰).
@@ -43,13 +43,13 @@ pub fn viscosity_by_agent(i: &Agent, j: &Agent) -> Vector {
 
 // §4.1 Combined simulation loop
 
-/// Steps 1 to 4: all a_i. Step 1, the search for neighbors, is left out: here all agents look at all others.
+/// Steps 1B to 4: all a_i. Step 1, the search for neighbors, is left out: here all agents look at all others.
 pub fn evaluate(crowd: &mut Crowd) -> Vec<Vector> {
     for n in 0..crowd.agents.len() {
         update_density_and_pressure(crowd, n); // 1B
     }
     for n in 0..crowd.agents.len() {
-        crowd.agents[n].avoidance = held_avoidance(crowd, &crowd.agents[n]); // 2, 3: RVO
+        crowd.agents[n].avoidance = held_avoidance(crowd, &crowd.agents[n]); // 3: RVO
     }
     let agents = crowd.agents.iter();
     agents.map(|i| acceleration(crowd, i)).collect() // 2, 3, 3B, 4
@@ -68,6 +68,7 @@ pub fn terms(crowd: &Crowd, i: &Agent, profile: &Profile) -> Vec<(&'static str, 
         terms.push(("goal", goal_force(i) / i.mass));
     }
     if profile.navigation == Navigation::Social {
+        // Eq. 16, with the goal force
         let by_agents = agents(&|j| social_force_by_agent(i, j));
         let points = repelling_points(crowd, i).into_iter();
         let by_walls: Vector = points.map(|r_k| social_force_by_wall(i, r_k)).sum();
@@ -75,7 +76,7 @@ pub fn terms(crowd: &Crowd, i: &Agent, profile: &Profile) -> Vec<(&'static str, 
         terms.push(("social_walls", by_walls / i.mass));
     }
     if profile.sph {
-        // Eq. 2; below ρ_i⁰ there is no pressure force (§5.2). Reading: negative p_j stay in its sum.
+        // Eq. 2; below ρ_i⁰ there is no pressure force (§5.2). Reading: negative p_j stay in the sum of Eq. 11.
         let felt = if i.density < i.rest_density { 0.0 } else { 1.0 };
         let by_agents = agents(&|j| pressure_by_agent(i, j)) * felt;
         let regions = hidden_regions(crowd, i);
@@ -93,7 +94,8 @@ pub fn terms(crowd: &Crowd, i: &Agent, profile: &Profile) -> Vec<(&'static str, 
     terms
 }
 
-/// Step 5. Reading: agents move with their new velocities (semi-implicit Euler). Moves stop at walls.
+/// Step 5. Readings: agents move with their new velocities (semi-implicit Euler); the clamp comes after all forces;
+/// moves stop at walls.
 pub fn integrate(crowd: &mut Crowd, accelerations: &[Vector]) {
     for (i, &a_i) in crowd.agents.iter_mut().zip(accelerations) {
         i.velocity = (i.velocity + a_i * TIME_STEP).clamped(MAX_SPEED);
@@ -130,7 +132,8 @@ fn update_density_and_pressure(crowd: &mut Crowd, n: usize) {
 
 // §4.3 SPH obstacle handling
 
-/// The part of the disc of radius h around r_i that wall O_k hides (Fig. 2). Reading: none from agents behind the wall.
+/// The part of the disc of radius h around r_i that wall O_k hides (Fig. 2). Readings: nothing from an agent
+/// behind it; d is at least 1 nm.
 fn hidden_region(o_k: &Wall, r_i: Vector) -> Option<HiddenRegion> {
     let d = o_k.distance(r_i);
     if !(0.0..H).contains(&d) {
@@ -156,7 +159,7 @@ pub fn hidden_regions(crowd: &Crowd, i: &Agent) -> impl Iterator<Item = HiddenRe
     walls.filter_map(|o_k| hidden_region(o_k, i.position))
 }
 
-/// Eq. 9, the term of agent j: m_j W(r_i − r_j). Reading: the sum includes j = i.
+/// Eq. 4, the first sum of Eq. 9, the term of agent j: m_j W(r_i − r_j). Reading: the sum includes j = i.
 fn density_by_agent(i: &Agent, j: &Agent) -> f64 {
     j.mass * kernel(i.position - j.position)
 }
@@ -166,7 +169,7 @@ fn density_by_wall(i: &Agent, rest_density: f64, p_k: &HiddenRegion) -> f64 {
     rest_density * p_k.area * kernel(i.position - p_k.representative_point)
 }
 
-/// Eq. 11, the term of agent j: −m_j (p_i + p_j)/(2ρ_j) ∇W(r_i − r_j).
+/// Eqs. 6 and 11, the term of agent j: −m_j (p_i + p_j)/(2ρ_j) ∇W(r_i − r_j).
 pub fn pressure_by_agent(i: &Agent, j: &Agent) -> Vector {
     let p = i.pressure + j.pressure;
     -gradient(i.position - j.position) * (j.mass * p / (2.0 * j.density))
@@ -244,7 +247,7 @@ fn preferred_velocity(i: &Agent) -> Vector {
     (i.goal - i.position).direction() * PREFERRED_SPEED
 }
 
-// §5.3.1 Social force model. Eq. 16 is the sum of the forces. Reading: they are divided by m_i.
+// §5.3.1 Social force model. Reading: the forces of Eq. 16 are divided by m_i.
 const GOAL_SCALE: f64 = 1.0; // K^goal (§5.5)
 const RELAXATION_TIME: f64 = 0.5; // τ (§5.5)
 const AGENT_STRENGTH: f64 = 2.1; // V₀ (§5.5)
@@ -273,8 +276,8 @@ pub fn social_force_by_agent(i: &Agent, j: &Agent) -> Vector {
 }
 
 /// Eq. 19: −∇ U₀ e^(−|r_ik|/R).
-fn social_force_by_wall(i: &Agent, nearest_point: Vector) -> Vector {
-    let r_ik = i.position - nearest_point;
+fn social_force_by_wall(i: &Agent, r_k: Vector) -> Vector {
+    let r_ik = i.position - r_k;
     let slope = WALL_STRENGTH / WALL_RANGE * (-r_ik.norm() / WALL_RANGE).exp();
     r_ik.direction() * (slope * weight_in_view(i, -r_ik))
 }
@@ -302,7 +305,8 @@ fn repelling_points(crowd: &Crowd, i: &Agent) -> Vec<Vector> {
 const COLLISION_WEIGHT: f64 = 1.0; // w (§5.5)
 const CANDIDATES: usize = 250; // reading
 
-/// TTC(i, u): infinite without a collision. Reading: agents and walls that agent i touches already are ignored.
+/// TTC(i, u): infinite without a collision. Readings: agents and walls that agent i touches already are ignored, itself
+/// among them; walls count from their free side.
 fn time_to_collision(crowd: &Crowd, i: &Agent, u: Vector) -> f64 {
     let agents = crowd.agents.iter().filter_map(|j| {
         let (r_ij, reach) = (i.position - j.position, i.radius + j.radius);
@@ -334,7 +338,8 @@ fn candidates(crowd: &Crowd, i: &Agent) -> impl Iterator<Item = Vector> {
     })
 }
 
-/// Eq. 21: (v* − v_i)/Δt_coarse. Reading: v* is the first of the cheapest; zero if all candidates are too fast.
+/// Eq. 21: (v* − v_i)/Δt_coarse. Readings: candidates above s_max are left out; v* is the first of the cheapest, and
+/// zero if all are too fast.
 fn rvo_acceleration(crowd: &Crowd, i: &Agent) -> Vector {
     let slow = candidates(crowd, i).filter(|candidate| candidate.norm() <= MAX_SPEED);
     let costs = slow.map(|candidate| (cost(crowd, i, candidate), candidate));

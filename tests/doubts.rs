@@ -44,11 +44,8 @@ fn doors_that_never_open_get_a_note() {
         room
     };
     for closed in [json!([[0, 120]]), json!([[0, 50], [30, 500]])] {
-        let said = notes(&with_door(closed.clone()));
-        let never = said
-            .iter()
-            .any(|note| note.starts_with("doors[0]: `gate` is closed"));
-        assert_eq!(never, closed[0][1] == 120, "{closed}: {said:?}");
+        let said = note(&with_door(closed));
+        assert!(said.starts_with("doors[0]: `gate` is closed"), "{said}");
     }
     for closed in [json!([]), json!([[0, 119]]), json!([[1, 500]])] {
         assert_eq!(notes(&with_door(closed)), [""; 0]);

@@ -348,7 +348,7 @@ fn invalid_floor_plans_are_refused_with_the_place_and_the_fix() {
                       "features": [feature(pillar(), ""), feature(room(), "obstacle")]});
     let error = json(&full).unwrap_err().to_string();
     assert!(
-        error.ends_with("the obstacles leave no room for a person"),
+        error.ends_with("holes and obstacles leave no room for a person"),
         "{error}"
     );
     let missing = floor_plan::read(std::path::Path::new("no/such.wkt")).unwrap_err();

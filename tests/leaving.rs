@@ -1,8 +1,9 @@
 //! Notes on agents that cannot leave, leave at once, or have no room where they enter and wait.
 
+use sandbox::runs::notes;
 use serde_json::{Value, json};
 
-use crate::common::simulated::{measured, scenario};
+use crate::common::simulated::{driven, measured, scenario};
 
 /// A room of 14 m × 8 m with an exit and people.
 fn room(number: u32) -> Value {
@@ -15,17 +16,17 @@ fn room(number: u32) -> Value {
     })
 }
 
-fn notes(document: &Value) -> Vec<String> {
+fn said_before(document: &Value) -> Vec<String> {
     scenario(document, &[]).unwrap().notes
 }
 
 #[test]
 fn a_run_that_waits_for_an_empty_floor_that_no_agent_can_leave_gets_a_note() {
     let mut document = room(20);
-    assert_eq!(notes(&document), [""; 0]);
+    assert_eq!(said_before(&document), [""; 0]);
     document["exits"] = json!([]);
     document["goal"] = json!([13, 4]);
-    let said = notes(&document);
+    let said = said_before(&document);
     assert!(
         said.iter()
             .any(|note| note.starts_with("stop.when_empty: no agent can leave")),
@@ -33,7 +34,7 @@ fn a_run_that_waits_for_an_empty_floor_that_no_agent_can_leave_gets_a_note() {
     );
     assert_eq!(measured(document.clone()).arrived, 0);
     document["crowds"][0]["remove_within"] = json!(0.5);
-    let said = notes(&document);
+    let said = said_before(&document);
     assert!(
         !said.iter().any(|note| note.contains("no agent can leave")),
         "{said:?}"
@@ -46,7 +47,7 @@ fn agents_that_start_where_they_leave_get_a_note_with_their_number() {
     document["exits"] = json!([]);
     document["goal"] = json!([6, 4]);
     document["crowds"][0]["remove_within"] = json!(2.5);
-    let said = notes(&document);
+    let said = said_before(&document);
     let note = said
         .iter()
         .find(|note| note.contains("leave at once"))
@@ -73,7 +74,7 @@ fn a_waiting_area_without_room_for_all_gets_a_note() {
         ]);
         document["journeys"] = json!([{"name": "j", "stages": ["pit", "ramp"]}]);
         document["crowds"][0]["journey"] = json!("j");
-        notes(&document)
+        said_before(&document)
     };
     assert_eq!(small(10), [""; 0]);
     let said = "waiting_areas: 11 agents are sent to `pit`, 2.0 m², where bodies touch from 10 on; give it more room, \
@@ -88,7 +89,7 @@ fn a_source_whose_agents_enter_on_top_of_each_other_gets_a_note() {
         document["sources"] = json!([{
             "name": "tap", "min": [2, 4], "max": [2, 4], "columns": 1, "rows": 1, "every_secs": secs, "times": 20
         }]);
-        notes(&document)
+        said_before(&document)
     };
     assert_eq!(every(1.0), [""; 0]);
     let said = every(0.05).join("\n");
@@ -106,7 +107,45 @@ fn the_density_of_a_large_body_is_said_to_be_its_own() {
     assert_eq!(highest.mass, 2.5);
     let alone = 4.0 / std::f64::consts::PI * 2.5;
     assert!((highest.density_per_m2 - alone).abs() < 0.05 * alone);
-    let said = format!("at a body of mass 2.5, which has {alone:.2} P/m² alone");
+    let said = format!("at a body of mass 2.50, which has {alone:.2} P/m² alone");
     assert_eq!(highest.of_large(), Some(said));
     assert_eq!(measured(room(1)).highest_density.unwrap().of_large(), None);
+}
+
+#[test]
+fn a_run_that_ends_before_the_last_exit_opens_or_the_last_agents_enter_says_so() {
+    let early = |change: &dyn Fn(&mut Value)| {
+        let mut document = room(20);
+        document["stop"] = json!({"idle_secs": 10});
+        change(&mut document);
+        let said = notes::of(&driven(&document));
+        said.into_iter()
+            .find(|note| note.starts_with("stop.idle_secs"))
+    };
+    assert_eq!(early(&|_| ()), None);
+    let opens = early(&|document| document["exits"][0]["closed_secs"] = json!([[0, 20]]));
+    let said = "stop.idle_secs, 10 s, ended the run, but `ramp` opens at 20 s: give a longer time";
+    assert_eq!(opens.as_deref(), Some(said));
+    let enter = early(&|document| {
+        document["entrances"] = json!([
+            {"name": "west", "line": [[0, 3], [0, 5]], "per_sec": 1, "number": 5, "from_secs": 40}
+        ]);
+    });
+    let said =
+        "stop.idle_secs, 10 s, ended the run, but more agents enter later: give a longer time";
+    assert_eq!(enter.as_deref(), Some(said));
+}
+
+#[test]
+fn closures_that_overlap_are_one_and_their_order_does_not_count() {
+    let times = |closed: Value| {
+        let mut document = room(20);
+        document["exits"][0]["closed_secs"] = closed;
+        let scene = scenario(&document, &[]).unwrap().scene;
+        let changes = scene.journeys.changes.iter();
+        changes.map(|change| change.at).collect::<Vec<f64>>()
+    };
+    assert_eq!(times(json!([[0, 10], [5, 15]])), [0.0, 15.0]);
+    assert_eq!(times(json!([[10, 20], [0, 10]])), [0.0, 20.0]);
+    assert_eq!(times(json!([[30, 40], [0, 10]])), [0.0, 10.0, 30.0, 40.0]);
 }

@@ -74,6 +74,7 @@ fn every_slip_of_a_stranger_is_answered_with_what_to_do() {
     assert!(slips.len() > 110);
     assert_eq!(answer(&room().to_string()), "");
     let folder = tempfile::tempdir().unwrap();
+    let outline = "(0 0, 12 0, 12 10, 0 10, 0 0)";
     let files = [
         ("room.json", room().to_string()),
         ("p.dxf", "  0\nSECTION\n".to_owned()),
@@ -87,6 +88,15 @@ fn every_slip_of_a_stranger_is_answered_with_what_to_do() {
             "t.txt",
             "# id frame x/m y/m\n1 0 0 0\n1 1 0.1 0\n".to_owned(),
         ),
+        (
+            "semicolon.wkt",
+            "POLYGON ((0 0; 12 0; 12 10; 0 0))".to_owned(),
+        ),
+        (
+            "decimal.wkt",
+            "POLYGON ((0,5 0, 12 0, 12 10, 0,5 0))".to_owned(),
+        ),
+        ("hole.wkt", format!("POLYGON ({outline}, {outline})")),
     ];
     for (name, text) in &files {
         fs::write(folder.path().join(name), text).unwrap();
@@ -94,6 +104,7 @@ fn every_slip_of_a_stranger_is_answered_with_what_to_do() {
     let utf16 = "POLYGON".encode_utf16().flat_map(u16::to_le_bytes);
     let utf16: Vec<u8> = [0xff, 0xfe].into_iter().chain(utf16).collect();
     fs::write(folder.path().join("utf16.wkt"), utf16).unwrap();
+    fs::write(folder.path().join("room.gz"), [0x1f, 0x8b, 8, 0]).unwrap();
     let place = folder.path().to_str().unwrap();
     for slip in &slips {
         let (about, found, said) = match slip {

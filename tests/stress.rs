@@ -112,7 +112,8 @@ fn two_identical_agents_stay_together_and_cause_no_fault() {
 #[test]
 fn agents_that_start_inside_walls_are_moved_out_and_counted() {
     let found = survives("inside_walls", &[]);
-    assert_eq!((found.agents, found.displaced_agents), (11, 10));
+    // Two stand exactly on an edge and on a corner.
+    assert_eq!((found.agents, found.displaced_agents), (11, 9));
 }
 
 #[test]

@@ -24,12 +24,12 @@ fn within<T: FromStr + PartialOrd>(
 }
 
 pub fn seconds(text: &str) -> Result<f64, &'static str> {
-    within(text, 0.0..=1e9, "not a time in seconds, 0 or later")
+    within(text, 0.0..=1e9, "not a time in seconds from 0 to 1e7")
 }
 
 pub fn positive_seconds(text: &str) -> Result<f64, &'static str> {
     let range = f64::MIN_POSITIVE..=1e9;
-    within(text, range, "not a time in seconds above 0")
+    within(text, range, "not a time in seconds above 0, at most 1e7")
 }
 
 /// A time that may lie before the start, seconds.

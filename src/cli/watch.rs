@@ -86,7 +86,8 @@ impl Listener for Watch {
         if self.lines {
             let (done, all) = (self.bar.position(), self.bar.length().unwrap_or_default());
             let left = self.bar.eta().as_secs();
-            let percent = 100 * done / all.max(1);
+            // Cases may take longer than expected.
+            let percent = (100 * done / all.max(1)).min(100);
             talk(&format!("{percent:>3} %, {left} s left; {text}"));
         } else {
             self.bar.set_message(printable(&text));

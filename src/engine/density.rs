@@ -1,6 +1,6 @@
 //! Step 1B: density, personal rest density and pressure (§4.2, §4.3).
 //!
-//! Plain form: `update_density_and_pressure`, `density_by_agent`, `mean_density` and `pressure` in
+//! Plain form: `update_density_and_pressure`, `density_by_agent`, `kernel`, `mean_density` and `pressure` in
 //! `examples/paper.rs`.
 
 use std::f64::consts::PI;

@@ -3,10 +3,11 @@
 use crate::analysis::stability::{FITTED, Scheme, three_digits};
 use crate::engine::clock::SHORTEST_TIME_STEP;
 use crate::engine::forces::rates::Rates;
-use crate::engine::journeys::Kind;
+use crate::engine::geometry::Walls;
+use crate::engine::journeys::{ChangeKind, Kind};
 use crate::engine::scene::Scene;
 use crate::engine::simulation::{EventKind, Limited, SPOT_RADIUS};
-use crate::runs::drive::Run;
+use crate::runs::drive::{End, Run};
 use crate::scenario::measurements::LongestQueue;
 use crate::scenario::quote::shown;
 use crate::scenario::{automatic_step, doubtful_radius, tidy};
@@ -17,7 +18,7 @@ pub fn of(run: &Run) -> Vec<String> {
     let queues = run.metrics.longest_queues(&run.simulation);
     let packed = queues.iter().filter_map(LongestQueue::packed);
     let all = moved(run).into_iter().chain(waited(run));
-    let all = all.chain(packed).chain(idle_pushes(run));
+    let all = all.chain(packed).chain(idle_pushes(run)).chain(early(run));
     all.map(|note| tidy(&note)).collect()
 }
 
@@ -34,7 +35,7 @@ fn moved(run: &Run) -> Vec<String> {
         ));
     }
     if outcome.contained.count > 0 {
-        let moves = limited(&outcome.contained, outcome.moves);
+        let moves = limited(&outcome.contained, outcome.moves, &scene.walls);
         notes.push(format!(
             "walls stopped {moves}, which would have crossed them"
         ));
@@ -46,7 +47,7 @@ fn moved(run: &Run) -> Vec<String> {
             true => "the agents' own max_speed".to_owned(),
             false => format!("max_speed, {} m/s", scene.max_speed),
         };
-        let moves = limited(&outcome.clamped, outcome.moves);
+        let moves = limited(&outcome.clamped, outcome.moves, &scene.walls);
         notes.push(format!("{most}, limited {moves}"));
     }
     notes
@@ -101,6 +102,41 @@ fn idle_pushes(run: &Run) -> Vec<String> {
     idle.map(|event| note(&event.name)).collect()
 }
 
+/// A note if the run ended for want of arrivals before the last agents entered or the last place opened.
+fn early(run: &Run) -> Option<String> {
+    let simulation = &run.simulation;
+    let idle = run
+        .scenario
+        .stop
+        .idle_secs
+        .filter(|_| run.end == Some(End::Idle))?;
+    let now = simulation.frame().clock.time();
+    let journeys = &simulation.scene().journeys;
+    let opens = journeys
+        .changes
+        .iter()
+        .find(|change| change.at > now && change.kind != ChangeKind::Close);
+    let opens = opens
+        .filter(|_| simulation.frame().agents.count_present() > 0)
+        .map(|change| {
+            let name = shown(&journeys.places[usize::from(change.place)].name);
+            match change.kind {
+                ChangeKind::Release => format!("`{name}` is released at {} s", change.at),
+                _ => format!("`{name}` opens at {} s", change.at),
+            }
+        });
+    let enter = simulation
+        .expects_agents()
+        .then(|| "more agents enter later".to_owned());
+    let missed: Vec<String> = opens.into_iter().chain(enter).collect();
+    (!missed.is_empty()).then(|| {
+        format!(
+            "stop.idle_secs, {idle} s, ended the run, but {}: give a longer time",
+            missed.join(", and ")
+        )
+    })
+}
+
 /// A warning if the time step is longer than the stability limit of a crowd at rest, where the integrator's is known.
 pub fn of_step(scene: &Scene) -> Option<String> {
     let scheme = Scheme::of(scene.integrator)?;
@@ -142,7 +178,7 @@ fn displaced(scene: &Scene, agent: u32) -> String {
 }
 
 /// The number of limited moves among all `moves`, and the place where most of them began.
-fn limited(limited: &Limited, moves: u64) -> String {
+fn limited(limited: &Limited, moves: u64, walls: &Walls) -> String {
     let count = limited.count;
     let percent = 100.0 * count as f64 / moves.max(1) as f64;
     let share = match percent {
@@ -150,12 +186,18 @@ fn limited(limited: &Limited, moves: u64) -> String {
         _ => format!("{count} of {moves} moves"),
     };
     let place = limited.spot().map(|(at, there)| {
+        // The middle of a cell may lie off the floor.
+        let solid = walls.obstacle_at(at);
+        let at = solid.and_then(|_| walls.free_point_near(at)).unwrap_or(at);
         let part = match there {
             there if there == count => "all of them".to_owned(),
             there if 2 * there > count => "most of them".to_owned(),
             there => format!("{:.0} % of them", 100.0 * there as f64 / count as f64),
         };
-        format!(", {part} within {SPOT_RADIUS} m of ({}, {})", at.x, at.y)
+        format!(
+            ", {part} within {SPOT_RADIUS} m of ({:.1}, {:.1})",
+            at.x, at.y
+        )
     });
     share + &place.unwrap_or_default()
 }

@@ -57,12 +57,21 @@ pub fn standard_input() -> Result<String> {
 
 fn text_of(bytes: Vec<u8>) -> Result<String> {
     let text = String::from_utf8(bytes);
-    let mut text = text.map_err(|_| {
-        let reason = "not UTF-8 text; save it as UTF-8";
-        Error::new(ErrorKind::InvalidData, reason)
-    })?;
+    let mut text =
+        text.map_err(|error| Error::new(ErrorKind::InvalidData, not_text(error.as_bytes())))?;
     text.drain(..text.len() - without_mark(&text).len());
     Ok(text)
+}
+
+/// What bytes are that are not UTF-8, by their beginning.
+fn not_text(bytes: &[u8]) -> &'static str {
+    match bytes {
+        [0x1f, 0x8b, ..] => "a file compressed by gzip, not text; unpack it",
+        [b'P', b'K', 3, 4, ..] => "a zip archive, not text; unpack it",
+        [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => "UTF-32 text; save it as UTF-8",
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "UTF-16 text; save it as UTF-8",
+        _ => "not UTF-8 text; save it as UTF-8",
+    }
 }
 
 /// Reads the rest of a file.

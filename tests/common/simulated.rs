@@ -32,11 +32,15 @@ pub fn go_on(simulation: &mut Simulation, secs: f64) {
     }
 }
 
-/// What a run of this document measures.
-pub fn measured(document: Value) -> Summary {
-    let scenario = Scenario::parse(&document.to_string(), "f.json", &[]).unwrap();
-    let mut run = Run::new(scenario).unwrap();
+/// The whole run of this document.
+pub fn driven(document: &Value) -> Run {
+    let mut run = Run::new(scenario(document, &[]).unwrap()).unwrap();
     run.drive::<Fault, dyn Observer<Fault>>(&mut [], || false)
         .unwrap();
-    Summary::of(&run)
+    run
+}
+
+/// What a run of this document measures.
+pub fn measured(document: Value) -> Summary {
+    Summary::of(&driven(&document))
 }

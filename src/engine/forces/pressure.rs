@@ -1,6 +1,6 @@
 //! SPH pressure (§3.3, §4.3, Eqs. 11 and 12, divided by the density as in Eq. 2).
 //!
-//! Plain form: `pressure_by_agent` and `pressure_by_wall` in `examples/paper.rs`.
+//! Plain form: `pressure_by_agent`, `pressure_by_wall` and `gradient` in `examples/paper.rs`.
 
 use std::f64::consts::PI;
 use std::ops::Range;

@@ -1,6 +1,6 @@
 //! SPH viscosity (§3.3, Eq. 7, times μ and divided by the density as in Eq. 2).
 //!
-//! Plain form: `viscosity_by_agent` in `examples/paper.rs`.
+//! Plain form: `viscosity_by_agent` and `laplacian` in `examples/paper.rs`.
 
 use std::f64::consts::PI;
 use std::ops::Range;

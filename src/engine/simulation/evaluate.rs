@@ -1,6 +1,6 @@
 //! Steps 1–4: from the state to the accelerations, without moving agents.
 //!
-//! Plain form: `evaluate` and `held_avoidance` in `examples/paper.rs`.
+//! Plain form: `evaluate`, `terms` and `held_avoidance` in `examples/paper.rs`.
 
 use rayon::iter::{Either, repeat_n};
 use rayon::prelude::*;

@@ -9,6 +9,9 @@ use crate::engine::scene::{Goal, Push, Scene, Source};
 use super::entrances::{Backlog, Gate, Late};
 use super::{Crowd, Fault, Simulation, Stage};
 
+/// Agents this near to a free point are not moved to it, meters.
+const EDGE: f64 = 1e-6;
+
 /// A scheduled event.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {
@@ -178,8 +181,12 @@ impl Crowd {
         }
         if let Some(obstacle) = scene.walls.obstacle_at(new.position) {
             let free = scene.walls.free_point_near(new.position);
-            new.position = free.ok_or(Fault::NoFreePoint { agent, obstacle })?;
-            self.outcome.displaced.push((agent, obstacle));
+            let free = free.ok_or(Fault::NoFreePoint { agent, obstacle })?;
+            // An agent on the edge of an obstacle stays there.
+            if (free - new.position).norm() > EDGE {
+                self.outcome.displaced.push((agent, obstacle));
+            }
+            new.position = free;
         }
         self.agents.enter(new, scene.seed);
         let usual = [scene.preferred_speed, scene.max_speed];

@@ -64,7 +64,9 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
         data.push(json!({ "question": title, "study": study.json() }));
     }
     let seeds = studies.first().map_or(0, |study| study.study.seeds);
-    let markdown = format!("Over {seeds} seed(s): mean ± sample standard deviation.\n\n{markdown}");
+    let markdown = format!(
+        "Over {seeds} seed(s): mean ± half the 95 % confidence interval of the mean (Student's t).\n\n{markdown}"
+    );
     let json = json!({ "seeds": seeds, "questions": data });
     store.write("questions.md", markdown.as_bytes())?;
     store.write("questions.json", format!("{json:#}\n").as_bytes())?;
@@ -84,20 +86,26 @@ fn table(combinations: &[Combination]) -> String {
             match metric {
                 "locked" => format!("{} of {}", values.iter().sum::<f64>(), values.len()).into(),
                 "evacuated" => evacuated(&values).into(),
-                _ => Cell::from(MeanStd::of(&values)),
+                _ => Cell::from(
+                    MeanStd::of(&values).map(|of| Cell::Spread(of.mean, of.interval_95())),
+                ),
             }
         });
     }
     table.table().markdown()
 }
 
-/// The numbers of all seeds, or a single one if they are equal.
+/// The number of all seeds, or the least, the median and the largest one.
 fn evacuated(values: &[f64]) -> String {
-    let mut numbers = values.to_vec();
-    numbers.dedup();
-    let numbers = if numbers.len() == 1 { &numbers } else { values };
-    let each: Vec<String> = numbers.iter().map(f64::to_string).collect();
-    each.join(", ")
+    let Range {
+        minimum,
+        median,
+        maximum,
+    } = Range::of(values);
+    match minimum == maximum {
+        true => minimum.to_string(),
+        false => format!("{minimum} to {maximum}, median {median}"),
+    }
 }
 
 /// Which rankings of Table 2 hold in each geometry, and how many agents of the crossing stream get through.

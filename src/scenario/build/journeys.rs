@@ -3,16 +3,14 @@
 use std::collections::BTreeMap;
 
 use crate::engine::geometry::Walls;
-use crate::engine::journeys::{
-    Change, ChangeKind, Choice, Journey, JourneyStage, Journeys, Kind, Place,
-};
+use crate::engine::journeys::{Choice, Journey, JourneyStage, Journeys, Kind, Place};
 use crate::engine::scene::RouteChoice;
+use crate::scenario::build::changes::changes;
 use crate::scenario::build::people::MOST_NUMBERED;
 use crate::scenario::build::places::{door, exit, queue, waypoint, zone};
 use crate::scenario::build::waiting::waiting_area;
 use crate::scenario::error::quote::shown;
 use crate::scenario::error::{Problem, Under, suggestion};
-use crate::scenario::file;
 use crate::scenario::file::File;
 use crate::scenario::floor_plan::Rings;
 use crate::scenario::keys::places;
@@ -60,7 +58,8 @@ pub fn journeys(
     for (k, given) in keys.zones.iter().enumerate() {
         found.journeys.zones.push(zone(k, given)?);
     }
-    found.add_changes(keys)?;
+    let changes = changes(keys, &found.journeys.places, |name| found.number(name))?;
+    found.journeys.changes = changes;
     found.check_waits()?;
     Ok(found.journeys)
 }
@@ -243,35 +242,6 @@ impl Found<'_> {
         Ok(JourneyStage { choice, places })
     }
 
-    /// The changes of places by closing times and events.
-    fn add_changes(&mut self, keys: &File) -> Result<(), Problem> {
-        let mut changes = Vec::new();
-        let exits = keys.exits.iter().enumerate();
-        let exits = exits.map(|(k, exit)| ("exits", k, &exit.name, &exit.closed_secs));
-        let doors = keys.doors.iter().enumerate();
-        let doors = doors.map(|(k, door)| ("doors", k, &door.name, &door.closed_secs));
-        for (list, k, name, closed_secs) in exits.chain(doors) {
-            let place = self.numbers[name];
-            for (n, &[from, until]) in closed_secs.iter().enumerate() {
-                if until <= from {
-                    let reason = format!("it ends at {until} s, before it begins at {from} s");
-                    let key = format!("{list}[{k}].closed_secs[{n}]");
-                    return Err(Problem::new(key, reason));
-                }
-                let kinds = [(from, ChangeKind::Close), (until, ChangeKind::Open)];
-                changes.extend(kinds.map(|(at, kind)| Change { at, place, kind }));
-            }
-        }
-        for (k, event) in keys.events.iter().enumerate() {
-            if let Some(change) = self.change(event).under(&format!("events[{k}]"))? {
-                changes.push(change);
-            }
-        }
-        changes.sort_by(|a, b| a.at.total_cmp(&b.at));
-        self.journeys.changes = changes;
-        Ok(())
-    }
-
     /// Checks that agents do not wait forever before the last stage of a journey.
     fn check_waits(&self) -> Result<(), Problem> {
         let Journeys {
@@ -298,37 +268,5 @@ impl Found<'_> {
             }
         }
         Ok(())
-    }
-
-    fn change(&self, event: &file::Event) -> Result<Option<Change>, Problem> {
-        let given = [
-            ("open", &event.open, ChangeKind::Open),
-            ("close", &event.close, ChangeKind::Close),
-            ("release", &event.release, ChangeKind::Release),
-        ];
-        let mut given = given.into_iter().filter(|(_, name, _)| name.is_some());
-        let Some((key, Some(name), kind)) = given.next() else {
-            return Ok(None);
-        };
-        let place = self.number(name).under(key)?;
-        let (fits, wanted) = match (&self.journeys.places[usize::from(place)].kind, kind) {
-            (Kind::Waiting(_), _) => (kind == ChangeKind::Release, "a waiting area"),
-            (Kind::Exit(_), _) => (kind != ChangeKind::Release, "an exit"),
-            (Kind::Door(_), _) => (kind != ChangeKind::Release, "a door"),
-            (Kind::Queue(_), _) => (false, "a queue"),
-            (Kind::Line(_) | Kind::Disk { .. }, _) => (false, "a waypoint"),
-        };
-        if !fits {
-            let reason = format!(
-                "`{}` is {wanted}; exits and doors can open and close, and waiting areas can be released",
-                shown(name)
-            );
-            return Err(Problem::new(key, reason));
-        }
-        Ok(Some(Change {
-            at: event.at_secs,
-            place,
-            kind,
-        }))
     }
 }

@@ -1,7 +1,8 @@
-//! Notes on agents that cannot leave, leave at once, or have no room where they enter and wait.
+//! Notes on agents that cannot leave, leave at once, or have no room where they start, enter, walk to and wait.
 
-use crate::engine::agents::{NewAgent, REFERENCE_RADIUS};
+use crate::engine::agents::{NewAgent, RADIUS_RANGE, REFERENCE_RADIUS};
 use crate::engine::journeys::{Kind, Place};
+use crate::engine::math::Vector;
 use crate::engine::scene::{Group, Scene, Source};
 use crate::scenario::error::numbers::brief;
 use crate::scenario::error::quote::shown;
@@ -14,7 +15,8 @@ const TOUCHING: f64 = 5.4;
 pub fn notes(keys: &File, scene: &Scene) -> Vec<String> {
     let trapped = trapped(keys, scene).into_iter();
     let all = trapped.chain(at_once(scene)).chain(overfull(scene));
-    all.chain(overrun(scene)).collect()
+    let all = all.chain(overrun(scene)).chain(in_walls(keys, scene));
+    all.chain(narrow(scene)).collect()
 }
 
 fn group(scene: &Scene, k: u16) -> &Group {
@@ -110,4 +112,52 @@ fn overrun(scene: &Scene) -> Vec<String> {
     };
     let sources = scene.sources.iter().enumerate();
     sources.filter_map(note).collect()
+}
+
+/// A note on single agents that start with half of their body in a wall or more.
+fn in_walls(keys: &File, scene: &Scene) -> Option<String> {
+    let distance = |p: Vector, reach: f64| {
+        let mut walls = Vec::new();
+        scene.walls.near(p, reach, &mut walls);
+        let nearest = walls
+            .iter()
+            .map(|&k| scene.walls.wall(k).nearest_point(p).point);
+        nearest.map(|point| (point - p).norm()).reduce(f64::min)
+    };
+    let starts = keys.agents.iter().enumerate().filter_map(|(k, agent)| {
+        let p = Vector::from(agent.position);
+        let radius = agent.radius.unwrap_or(RADIUS_RANGE[0]);
+        let distance = distance(p, 0.5 * radius)?;
+        Some((k, distance, radius))
+    });
+    let starts: Vec<(usize, f64, f64)> = starts.collect();
+    let (k, distance, radius) = starts.first()?;
+    let more = match starts.len() - 1 {
+        0 => String::new(),
+        more => format!(", and so do {more} more"),
+    };
+    Some(format!(
+        "agents[{k}].position: the agent starts {distance:.2} m from a wall, less than half of its radius{more}: walls \
+         push it out; start at least {} m from walls",
+        brief(*radius)
+    ))
+}
+
+/// Notes on waypoints of which several agents at once keep each other.
+fn narrow(scene: &Scene) -> Vec<String> {
+    let is_alone = scene.agents.len() < 2 && scene.sources.is_empty() && scene.entrances.is_empty();
+    let note = |place: &Place| {
+        let Kind::Disk { within, .. } = place.kind else {
+            return None;
+        };
+        (within < REFERENCE_RADIUS && !is_alone).then(|| {
+            format!(
+                "waypoints: `{}` is reached `within` {} m, less than the radius of a body: agents that come together \
+                 keep each other from it; give 0.5 m or more, or a line",
+                shown(&place.name),
+                brief(within)
+            )
+        })
+    };
+    scene.journeys.places.iter().filter_map(note).collect()
 }

@@ -1,6 +1,7 @@
 //! The keys of a file → a scene: walls, places, ways and people, and what is refused or noted on the way.
 
 pub mod bodies;
+pub mod changes;
 pub mod crossed;
 pub mod crowds;
 pub mod doors;

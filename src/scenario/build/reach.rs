@@ -152,8 +152,10 @@ impl<'a> Journeying<'a> {
             return Ok(());
         };
         let prepared = self.prepared;
+        // A place has no words after its name.
+        let comma = if group.name.contains(',') { "," } else { "" };
         let reason = format!(
-            "of `{}`: no way leads from {}, to `{}`: {}",
+            "of `{}`: no way leads from {}{comma} to `{}`: {}",
             shown(&prepared.scene.journeys.journeys[usize::from(journey)].name),
             group.name,
             shown(&prepared.places[usize::from(missed)].name),

@@ -119,6 +119,12 @@ pub fn of_syntax(text: &str, line: usize, column: usize) -> Option<String> {
         '.' => Some("numbers of JSON begin with a digit: write 0 before the point".to_owned()),
         ';' => Some("JSON has commas between its values, no semicolons".to_owned()),
         '=' => Some("JSON has a colon after a key: write \"key\": value".to_owned()),
+        c if !c.is_ascii() && (c.is_whitespace() || "\u{200b}\u{2060}\u{feff}".contains(c)) => {
+            Some(format!(
+                "a special space, U+{:04X}, stands here: write an ordinary one",
+                u32::from(c)
+            ))
+        }
         c if c.is_ascii_digit() && is_decimal(whole, from) => {
             Some("JSON has decimal points: write 1.5, not 1,5".to_owned())
         }

@@ -2,7 +2,6 @@
 
 pub mod hints;
 pub mod kinds;
-pub mod meant;
 pub mod numbers;
 pub mod quote;
 

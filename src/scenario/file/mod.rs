@@ -5,6 +5,7 @@
 mod brackets;
 mod keyed;
 pub mod listed;
+pub mod meant;
 pub mod range;
 pub mod schema;
 

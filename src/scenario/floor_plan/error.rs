@@ -49,8 +49,8 @@ pub enum FloorPlanError {
         /// Extent along y, meters.
         height: f64,
     },
-    /// The obstacles fill the walkable area.
-    #[error("the obstacles leave no room for a person")]
+    /// Holes and obstacles fill the walkable area.
+    #[error("holes and obstacles leave no room for a person")]
     NoRoom,
     /// A geometry is not a polygon, is too far from the origin, or has an invalid ring.
     #[error("{}{reason}", at(.place))]

@@ -229,8 +229,8 @@ impl FloorPlan {
                 ..Self::default()
             });
         }
-        let largest = |areas: &[Area]| areas.iter().map(Area::area).fold(0.0, f64::max);
-        let whole = largest(&walkable);
+        let outlines = walkable.iter().map(|area| area.exterior.area());
+        let whole = outlines.fold(0.0, f64::max);
         let mut walkable = unite::without(&walkable, &obstacles)?;
         // A smaller extent means a finer grid: compute the corners again.
         let mut before = width.max(height);
@@ -242,7 +242,7 @@ impl FloorPlan {
             before = along.max(across);
             walkable = unite::without(&walkable, &[])?;
         }
-        let room = largest(&walkable);
+        let room = walkable.iter().map(Area::area).fold(0.0, f64::max);
         let [along, across] = extent(walkable.iter());
         let is_short = along.max(across) < SHORT;
         if room < STANDING_ROOM && (is_short || !obstacles.is_empty()) {

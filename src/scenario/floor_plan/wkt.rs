@@ -41,7 +41,8 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
     Ok(shapes)
 }
 
-/// Names the formats of plans if a piece that cannot be read does not look like WKT.
+/// What is probably wrong in a piece that cannot be read: numbers and points that are separated in another way, or
+/// another format of plans.
 fn formats(piece: &str) -> &'static str {
     let word = piece.split(|c: char| !c.is_ascii_alphabetic()).next();
     let word = word.unwrap_or_default().to_ascii_uppercase();
@@ -49,9 +50,22 @@ fn formats(piece: &str) -> &'static str {
         .iter()
         .any(|name| word.contains(name))
     {
+        true if piece.contains(';') => {
+            "; a comma separates two points, not a semicolon: (0 0, 12 0, …)"
+        }
+        true if has_single_numbers(piece) => {
+            "; a space separates x and y, a comma two points, and decimals have points: (0.5 0, 12 0, …)"
+        }
         true => "",
         false => "; plans are WKT, GeoJSON or JuPedSim's XML",
     }
+}
+
+/// Whether a number stands alone between two commas.
+fn has_single_numbers(piece: &str) -> bool {
+    let between = piece.split([',', '(', ')']).map(str::trim);
+    let mut numbers = between.filter(|part| part.starts_with(|c: char| c.is_ascii_digit()));
+    numbers.any(|part| !part.contains(char::is_whitespace))
 }
 
 /// Splits a text into its geometries, each with the line that it begins on, from 1.

@@ -13,8 +13,8 @@ use crate::engine::ways::nearest_on;
 /// Agents that entered less than this ago have just started, seconds.
 const STARTING: f64 = 3.0;
 
-/// The agents outside of the line of a queue while it is full: agents that have joined it beyond its room, and slow agents
-/// around it that have not.
+/// The agents outside of the line of a queue while it is full: agents that have joined it beyond its room, and slow
+/// agents around it that have not.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outside {
     /// The largest number at one time.

@@ -32,7 +32,7 @@ impl HighestDensity {
         let alone = self.mass * kernel::density(0.0, 1.0);
         (self.mass > LARGE).then(|| {
             format!(
-                "at a body of mass {}, which has {alone:.2} P/m² alone",
+                "at a body of mass {:.2}, which has {alone:.2} P/m² alone",
                 self.mass
             )
         })

@@ -20,8 +20,8 @@ use crate::scenario::build::{
     doubts, journeys, numerics, off_floor, overcrowded, periodic, profiles, slits, surroundings,
     view, ways,
 };
-use crate::scenario::error::{Problem, Under, in_plain_words, meant};
-use crate::scenario::file::{File, range};
+use crate::scenario::error::{Problem, Under, in_plain_words};
+use crate::scenario::file::{File, meant, range};
 use crate::scenario::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE};
 use crate::scenario::keys::people::{Behavior, People};
 use crate::scenario::keys::profiles::{ProfileChoice, ProfileName};
@@ -120,7 +120,9 @@ impl Draft {
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
         let mut notes = self.notes;
         scene.journeys = journeys::journeys(keys, (&scene.walls, &behind), &mut notes)?;
-        let (of_people, items) = Population::new(keys, &blend, &behind, &mut scene).enter()?;
+        let entered = Population::new(keys, &blend, &behind, &mut scene).enter();
+        let (of_people, items) =
+            entered.map_err(|problem| meant::clearer(problem, &self.document))?;
         notes.extend(of_people);
         let duration_secs = duration(keys);
         overcrowded::check(keys, (&scene, &items), duration_secs)?;

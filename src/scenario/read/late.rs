@@ -82,6 +82,11 @@ pub fn idle(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
 /// A note if no agent is so near to the exit or goal at which it leaves that it gets there before `last`, in a run that
 /// ends at `end`, seconds. Agents walk straight there for this.
 pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
+    if last == 0.0 {
+        return Some(
+            "duration_secs: in 0 s nobody walks: the run has its first frame only".to_owned(),
+        );
+    }
     let is_all = scene.sources.is_empty() && scene.entrances.is_empty() && last > 0.0;
     let needs = |agent: &NewAgent| {
         let group = &scene.groups[usize::from(agent.group)];
