@@ -55,7 +55,7 @@ pub fn evaluate(crowd: &mut Crowd) -> Vec<Vector> {
     agents.map(|i| acceleration(crowd, i)).collect() // 2, 3, 3B, 4
 }
 
-/// Steps 3, 3B and 4 for one profile: the terms of a_i. Reading: social and goal forces are divided by m_i, as contact.
+/// Steps 3, 3B and 4 for one profile: the terms of a_i. Reading: the forces of Eq. 16 are divided by m_i, as contact.
 pub fn terms(crowd: &Crowd, i: &Agent, profile: &Profile) -> Vec<(&'static str, Vector)> {
     let agents = |force: &dyn Fn(&Agent) -> Vector| -> Vector {
         let others = crowd.agents.iter().filter(|j| j.id != i.id);
@@ -68,7 +68,6 @@ pub fn terms(crowd: &Crowd, i: &Agent, profile: &Profile) -> Vec<(&'static str, 
         terms.push(("goal", goal_force(i) / i.mass));
     }
     if profile.navigation == Navigation::Social {
-        // Eq. 16, with the goal force
         let by_agents = agents(&|j| social_force_by_agent(i, j));
         let points = repelling_points(crowd, i).into_iter();
         let by_walls: Vector = points.map(|r_k| social_force_by_wall(i, r_k)).sum();
@@ -94,8 +93,7 @@ pub fn terms(crowd: &Crowd, i: &Agent, profile: &Profile) -> Vec<(&'static str, 
     terms
 }
 
-/// Step 5. Readings: agents move with their new velocities (semi-implicit Euler); the clamp comes after all forces;
-/// moves stop at walls.
+/// Step 5. Readings: the new velocity moves an agent (semi-implicit Euler), clamped after all forces; walls stop moves.
 pub fn integrate(crowd: &mut Crowd, accelerations: &[Vector]) {
     for (i, &a_i) in crowd.agents.iter_mut().zip(accelerations) {
         i.velocity = (i.velocity + a_i * TIME_STEP).clamped(MAX_SPEED);
@@ -132,8 +130,7 @@ fn update_density_and_pressure(crowd: &mut Crowd, n: usize) {
 
 // §4.3 SPH obstacle handling
 
-/// The part of the disc of radius h around r_i that wall O_k hides (Fig. 2). Readings: nothing from an agent
-/// behind it; d is at least 1 nm.
+/// The part of the disc of radius h around r_i that wall O_k hides (Fig. 2). Reading: nothing from agents behind it.
 fn hidden_region(o_k: &Wall, r_i: Vector) -> Option<HiddenRegion> {
     let d = o_k.distance(r_i);
     if !(0.0..H).contains(&d) {
@@ -305,8 +302,8 @@ fn repelling_points(crowd: &Crowd, i: &Agent) -> Vec<Vector> {
 const COLLISION_WEIGHT: f64 = 1.0; // w (§5.5)
 const CANDIDATES: usize = 250; // reading
 
-/// TTC(i, u): infinite without a collision. Readings: agents and walls that agent i touches already are ignored, itself
-/// among them; walls count from their free side.
+/// TTC(i, u): infinite without a collision. Readings: what agent i touches already (itself, too) and walls from behind
+/// are ignored.
 fn time_to_collision(crowd: &Crowd, i: &Agent, u: Vector) -> f64 {
     let agents = crowd.agents.iter().filter_map(|j| {
         let (r_ij, reach) = (i.position - j.position, i.radius + j.radius);
@@ -338,8 +335,7 @@ fn candidates(crowd: &Crowd, i: &Agent) -> impl Iterator<Item = Vector> {
     })
 }
 
-/// Eq. 21: (v* − v_i)/Δt_coarse. Readings: candidates above s_max are left out; v* is the first of the cheapest, and
-/// zero if all are too fast.
+/// Eq. 21: (v* − v_i)/Δt_coarse. Readings: v* is the first of the cheapest below s_max, zero if all are too fast.
 fn rvo_acceleration(crowd: &Crowd, i: &Agent) -> Vector {
     let slow = candidates(crowd, i).filter(|candidate| candidate.norm() <= MAX_SPEED);
     let costs = slow.map(|candidate| (cost(crowd, i, candidate), candidate));

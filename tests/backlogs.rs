@@ -27,7 +27,7 @@ fn the_backlog_is_reported_and_recorded() {
     let largest = backlog["largest"].as_u64().unwrap();
     let time = backlog["largest_at_secs"].as_f64().unwrap();
     let note = format!(
-        "note: up to {largest} agent(s) waited for room at \"gate\" (first at {time:.1} s); {waiting} still wait"
+        "note: up to {largest} agent(s) waited for room at \"gate\", the most at {time:.1} s; {waiting} still wait"
     );
     let said = stderr(&output);
     assert!(said.contains(&note), "{said}");

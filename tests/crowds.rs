@@ -176,7 +176,7 @@ fn what_does_not_fit_is_refused_with_the_number_that_fits() {
             said.starts_with("f: crowds[0]: 900 agents do not fit"),
             "{said}"
         );
-        assert!(said.contains(" free 100.0 m²"), "{said}");
+        assert!(said.contains(" in the 100.0 m² of floor "), "{said}");
         // Random places cover 0.547 of an area, a triangular lattice 0.907; none are nearer to a wall than a radius.
         let most = 0.25 * 0.25 * std::f64::consts::PI * number as f64 / (9.5 * 9.5);
         let expected = if spacing == "random" {

@@ -243,7 +243,7 @@ fn exits_of_whose_lines_much_lies_off_the_floor_are_noted() {
     for line in [
         json!([[12, 4], [12, 6]]),
         json!([[12, 8], [10, 10]]),
-        json!([[9, 2], [9, 9]]),
+        json!([[9, 0.5], [9, 9]]),
         json!([[12, 8], [12, 10.1]]),
     ] {
         assert_eq!(with_line(line.clone()), [""; 0], "{line}");

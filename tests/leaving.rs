@@ -149,3 +149,19 @@ fn closures_that_overlap_are_one_and_their_order_does_not_count() {
     assert_eq!(times(json!([[10, 20], [0, 10]])), [0.0, 20.0]);
     assert_eq!(times(json!([[30, 40], [0, 10]])), [0.0, 10.0, 30.0, 40.0]);
 }
+
+#[test]
+fn shares_of_exits_are_of_all_agents_that_leave_also_at_goals() {
+    let mut document = room(20);
+    let area = document["crowds"][0]["area"].clone();
+    document["crowds"] = json!([
+        {"name": "out", "area": area, "number": 10},
+        {"name": "stage", "area": area, "number": 10, "goal": [3, 4], "remove_within": 1}
+    ]);
+    let summary = measured(document);
+    let exit = &summary.places[0];
+    assert_eq!(
+        (summary.arrived, exit.passed, exit.share),
+        (20, 10, Some(0.5))
+    );
+}

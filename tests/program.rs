@@ -46,6 +46,7 @@ mod read_hdf5;
 mod recording;
 mod recording_views;
 mod report_pictures;
+mod report_settings;
 mod report_tables;
 mod reports;
 mod reproduction;

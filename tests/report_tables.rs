@@ -7,6 +7,7 @@ use std::process::Command;
 use sandbox::lab::suite::Status;
 use serde_json::json;
 
+use crate::common::html::rows;
 use crate::common::pdf;
 use crate::common::program::{run_in, stderr};
 use crate::common::room::{done, scenario};
@@ -154,21 +155,6 @@ fn a_report_has_the_notes_of_the_run_and_the_limits_that_the_scenario_gives() {
     let people = rows(&html, "People");
     assert_eq!(people[0][6..8], ["–", "–"]);
     assert_eq!(people[1][6..8], ["0.35", "2.5"]);
-}
-
-/// The cells of the first table below a heading.
-fn rows(html: &str, heading: &str) -> Vec<Vec<String>> {
-    let (_, rest) = html.split_once(&format!("<h2>{heading}</h2>")).unwrap();
-    let (table, _) = rest.split_once("</table>").unwrap();
-    let rows = table.split("<tr").skip(2).map(|row| {
-        let cells = row.split("<td").skip(1);
-        let cell = |cell: &str| {
-            let (_, text) = cell.split_once('>').unwrap();
-            text.split("</td>").next().unwrap().replace("&gt;", ">")
-        };
-        cells.map(cell).collect()
-    });
-    rows.collect()
 }
 
 #[test]

@@ -175,6 +175,38 @@ fn a_breakdown_shows_the_ways_that_an_agent_compares() {
 }
 
 #[test]
+fn without_times_a_breakdown_says_that_an_agent_takes_the_shortest_way() {
+    let mut document = two_rooms(&[(4.0, 1.0)], 60);
+    document["route_choice"] = json!("shortest");
+    document["doors"] = json!([{"name": "door", "line": [[10.1, 3.5], [10.1, 4.5]]}]);
+    let mut simulation = after(&document, &[], 3.0);
+    simulation.evaluate().unwrap();
+    let agents: Vec<usize> = simulation.frame().agents.present().collect();
+    let mut seen = 0;
+    for i in agents {
+        let breakdown = Breakdown::of(&simulation, i).unwrap();
+        let Some(choice) = &breakdown.way_choice else {
+            continue;
+        };
+        seen += 1;
+        assert!(!choice.by_time);
+        assert!(
+            choice
+                .ways
+                .iter()
+                .all(|way| way.flow_per_sec.is_none() && way.total_secs.is_none())
+        );
+        let said = breakdown.to_string();
+        assert!(
+            !said.contains("time: ") && !said.contains("ahead at"),
+            "{said}"
+        );
+        assert!(said.contains("ways out of the room: "), "{said}");
+    }
+    assert!(seen > 0);
+}
+
+#[test]
 fn equal_doors_are_used_alike_and_wide_doors_more() {
     // The part of the people that take the northern door, over five seeds.
     let northern = |doors: &[(f64, f64)]| {

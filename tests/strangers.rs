@@ -82,7 +82,7 @@ fn every_slip_of_a_stranger_is_answered_with_what_to_do() {
         ("t.csv", "id,frame,x,y\n1,0,0,0\n".to_owned()),
         (
             "result.json",
-            json!({"state_sha256": "", "metrics": {}}).to_string(),
+            json!({"scenario": "room", "state_sha256": "", "metrics": {}}).to_string(),
         ),
         (
             "t.txt",
@@ -95,6 +95,10 @@ fn every_slip_of_a_stranger_is_answered_with_what_to_do() {
         (
             "decimal.wkt",
             "POLYGON ((0,5 0, 12 0, 12 10, 0,5 0))".to_owned(),
+        ),
+        (
+            "rooms.xml",
+            "<geometry unit=\"m\"><rooms><room><subrooms><subroom/></subrooms></room></rooms></geometry>".to_owned(),
         ),
         ("hole.wkt", format!("POLYGON ({outline}, {outline})")),
     ];

@@ -128,7 +128,13 @@ fn overview(run: &Run, summary: &Summary) -> String {
         let percent = exit.share.map_or(0.0, |share| 100.0 * share);
         format!("{} {} ({percent:.0} %)", shown(&exit.name), exit.passed)
     });
-    let exits: Vec<String> = exits.collect();
+    let mut exits: Vec<String> = exits.collect();
+    let at_exits: f64 = summary.places.iter().filter_map(|exit| exit.share).sum();
+    let elsewhere = ((1.0 - at_exits) * *arrived as f64).round();
+    if elsewhere > 0.0 && !exits.is_empty() {
+        let percent = 100.0 * (1.0 - at_exits);
+        exits.push(format!("at goals {elsewhere} ({percent:.0} %)"));
+    }
     if !exits.is_empty() {
         line("left by exit", exits.join(", "));
     }
@@ -159,8 +165,12 @@ fn overview(run: &Run, summary: &Summary) -> String {
                 " (up to {agents} outside of its line, at {at_secs:.0} s; {mean_secs:.0} s each on average)"
             )
         });
+        let whose = match queue.outside {
+            Some(_) => " outside of its line",
+            None => "",
+        };
         let density = queue.density_per_m2.map_or(String::new(), |density| {
-            format!(", at up to {density:.1} P/m²")
+            format!(", at up to {density:.1} P/m²{whose}")
         });
         format!("{agents} before {before} after {secs:.0} s{density}{outside}")
     });

@@ -76,6 +76,14 @@ impl Flow {
 }
 
 impl Arrivals {
+    /// The number of agents that are to arrive; `None`: unlimited.
+    pub fn planned(&self) -> Option<u32> {
+        match self {
+            Self::Constant(flow) | Self::Poisson(flow) => flow.number,
+            Self::At(times) => Some(times.len() as u32),
+        }
+    }
+
     /// The time of arrival number `k`, from 0, which follows the one at `before`, seconds; `None` if there is none.
     /// `seed` is that of the population, `entrance` the number of the entrance.
     pub fn time(&self, k: u32, before: Option<f64>, seed: u64, entrance: u32) -> Option<f64> {

@@ -64,7 +64,7 @@ fn waited(run: &Run) -> Vec<String> {
             waiting => format!("; {waiting} still wait"),
         };
         format!(
-            "up to {} agent(s) waited for room at \"{}\" (first at {time:.1} s){rest}",
+            "up to {} agent(s) waited for room at \"{}\", the most at {time:.1} s{rest}",
             backlog.largest,
             shown(backlog.name)
         )

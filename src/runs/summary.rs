@@ -74,7 +74,7 @@ pub struct Summary {
     #[serde(default)]
     pub highest_density: Option<HighestDensity>,
     /// The longest queue before each place, goal, door and opening, the longest one first.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub longest_queues: Vec<LongestQueue>,
     /// Why the run ended; `None` if it has not.
     pub end: Option<End>,
@@ -82,7 +82,7 @@ pub struct Summary {
     #[serde(default)]
     pub stuck: usize,
     /// These agents by the likely cause.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub stuck_because: Vec<StuckGroup>,
     /// The measurements by name; counts are integers, missing values are `null`.
     pub metrics: BTreeMap<String, Value>,
@@ -253,11 +253,11 @@ pub struct PlaceResult {
     pub kind: String,
     /// The number of agents that have passed it, each counted once.
     pub passed: u32,
-    /// For an exit: its share of all agents that have left at exits.
+    /// For an exit: its share of all agents that have left, at exits and goals.
     pub share: Option<f64>,
     /// The time of the first and the last agent that left here, seconds; `None` if it is no exit.
     pub from_to_secs: Option<[f64; 2]>,
-    /// For waiting areas and queues: the mean time that agents waited, seconds.
+    /// For waiting areas and queues: the mean time that agents waited at a visit, seconds.
     pub waited_secs: Option<f64>,
 }
 
@@ -272,8 +272,8 @@ impl PlaceResult {
         let arrivals = &simulation.outcome().arrivals;
         let states = places.iter().zip(&progress.places).enumerate();
         let result = |(k, (place, state)): (usize, (&Place, &PlaceState))| {
+            let all = arrivals.len();
             let trips = arrivals.iter().filter_map(|a| Some((a.time, a.trip?.exit)));
-            let all = trips.clone().count();
             let here = trips.filter(|&(_, exit)| usize::from(exit) == k);
             let times: Vec<f64> = here.map(|(time, _)| time).collect();
             let passed = f64::from(state.passed);

@@ -8,6 +8,7 @@ pub mod drawn;
 pub mod errands;
 pub mod exits;
 pub mod floors;
+pub mod html;
 pub mod json_schema;
 pub mod legs;
 #[cfg(all(feature = "program", unix))]

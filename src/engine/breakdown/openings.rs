@@ -1,4 +1,4 @@
-//! The ways between which an agent chooses by time.
+//! The ways out of the room of an agent, and why it takes the one that it does.
 
 use serde::Serialize;
 
@@ -9,6 +9,8 @@ use crate::engine::simulation::{Closed, Outlook, Simulation};
 pub struct WayChoice {
     /// The ways out of its room, and to its goal if that is in the room, the quickest first.
     pub ways: Vec<WaySeen>,
+    /// Whether it compares times; else it takes the shortest way that is open.
+    pub by_time: bool,
     /// Why it takes its way.
     pub reason: &'static str,
     /// When it compares them again if it has a choice, seconds.
@@ -26,7 +28,7 @@ pub struct WaySeen {
     pub length: f64,
     /// Agents that pass the opening before: those that are nearer to it, and those that come from the other side.
     pub ahead: u32,
-    /// Its flow, P/s; `None` at the goal.
+    /// Its flow, P/s; `None` at the goal, and if no times are compared.
     pub flow_per_sec: Option<f64>,
     /// The time until the agent has passed it, seconds; `None` if the way is closed.
     pub through_secs: Option<f64>,
@@ -66,6 +68,7 @@ impl WayChoice {
                 }
             }
         };
+        let by_time = scene.by_time();
         let mut outlooks = comparison.outlooks;
         outlooks.sort_by(|a, b| a.total.total_cmp(&b.total));
         let is_quickest = outlooks
@@ -79,17 +82,20 @@ impl WayChoice {
                 through: name(outlook),
                 length: outlook.length,
                 ahead: outlook.ahead,
-                flow_per_sec: Some(outlook.flow).filter(|flow| flow.is_finite()),
-                through_secs: Some(outlook.until_through).filter(|_| closed.is_none()),
-                total_secs: Some(outlook.total).filter(|_| closed.is_none()),
+                flow_per_sec: Some(outlook.flow).filter(|flow| by_time && flow.is_finite()),
+                through_secs: Some(outlook.until_through).filter(|_| by_time && closed.is_none()),
+                total_secs: Some(outlook.total).filter(|_| by_time && closed.is_none()),
                 closed,
                 shortest: outlook.step == comparison.shortest,
                 taken: outlook.step == plan.toward,
             }
         });
         Some(Self {
+            by_time,
             reason: match (outlooks.len(), is_quickest) {
                 (0 | 1, _) => "there is no other",
+                _ if !by_time && plan.toward == comparison.shortest => "it is the shortest",
+                _ if !by_time => "the shortest is closed",
                 (_, true) => "it takes the least time",
                 (_, false) => "no other was clearly quicker when the agent last compared them",
             },

@@ -86,11 +86,14 @@ impl Breakdown {
         let Some(choice) = &self.way_choice else {
             return Ok(());
         };
-        writeln!(
-            f,
-            "  way by time: {}; compared again at {:.2} s, changed {} times",
-            choice.reason, choice.again_at_secs, choice.changes
-        )?;
+        match choice.by_time {
+            true => writeln!(
+                f,
+                "  way by time: {}; compared again at {:.2} s, changed {} times",
+                choice.reason, choice.again_at_secs, choice.changes
+            )?,
+            false => writeln!(f, "  ways out of the room: {}", choice.reason)?,
+        }
         for way in &choice.ways {
             let flow = way.flow_per_sec.map_or(String::new(), |flow| {
                 format!(", {} ahead at {flow:.2} P/s", way.ahead)
@@ -98,14 +101,11 @@ impl Breakdown {
             let total = way.total_secs.map(|total| format!("{total:6.2} s"));
             let through = way.through_secs;
             let through = through.map(|secs| format!(", through after {secs:.2} s"));
-            let closed = || {
-                way.closed
-                    .map_or(String::new(), |closed| closed.to_string())
-            };
+            let closed = way.closed.map(|closed| closed.to_string());
+            let before = total.or(closed).map_or(String::new(), |said| said + ": ");
             writeln!(
                 f,
-                "    {}: {:.2} m to {}{flow}{}{}{}",
-                total.unwrap_or_else(closed),
+                "    {before}{:.2} m to {}{flow}{}{}{}",
                 way.length,
                 way.through,
                 through.unwrap_or_default(),

@@ -137,10 +137,16 @@ pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
             let packed = queue
                 .packed()
                 .map_or(String::new(), |packed| format!("; {packed}"));
+            let whose = match queue.outside {
+                Some(_) => " who stand outside of the line",
+                None => "",
+            };
             facts.push(Fact::new(
                 &format!("density of those who wait before {before}"),
                 format!("{density:.1} P/m²"),
-                format!("the highest median of the SPH densities at five or more of them{packed}"),
+                format!(
+                    "the highest median of the SPH densities at five or more of them{whose}{packed}"
+                ),
             ));
         }
     }

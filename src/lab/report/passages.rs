@@ -92,9 +92,9 @@ impl Passages {
             .fixed("last [s]", 1, |row| row.times.map(|[_, last]| last))
             .fixed("P/(m s)", 2, |row| row.flow)
             .table();
-        let caption = "Free width: the length of the line without walls on it. Open: by timetable and events. \
-                       At most: the limit `most_per_sec` of an exit. P/(m s): the people after the first one, \
-                       per meter of free width and second between the first and the last one.";
+        let caption = "Free width: the length of the line without walls on it or flush with it. Open: by timetable and \
+                       events. At most: the limit `most_per_sec` of an exit. P/(m s): the people after the first \
+                       one, per meter of free width and second between the first and the last one.";
         (!rows.is_empty()).then(|| Block::Table(table, caption.to_owned()))
     }
 }
@@ -111,7 +111,7 @@ struct Row {
     flow: Option<f64>,
 }
 
-/// The length of a line without the parts on which there are walls, meters.
+/// The length of a line without the parts that have walls on them or beside them, meters.
 fn free_width(scene: &Scene, [a, b]: [Vector; 2]) -> f64 {
     let length = (b - a).norm();
     let count = (length / STEP).ceil().max(1.0);
@@ -119,7 +119,7 @@ fn free_width(scene: &Scene, [a, b]: [Vector; 2]) -> f64 {
     let is_free = |k: &usize| {
         let p = a + (b - a) * ((*k as f64 + 0.5) / count);
         let mut sides = [p - across, p + across].into_iter();
-        sides.any(|side| scene.walls.obstacle_at(side).is_none())
+        sides.all(|side| scene.walls.obstacle_at(side).is_none())
     };
     length * (0..count as usize).filter(is_free).count() as f64 / count
 }

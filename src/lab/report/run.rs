@@ -64,7 +64,7 @@ pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> Result<Document
     }
     blocks.extend(waits(scenario, &summary.places));
     blocks.push(Block::heading("Settings that differ from the defaults"));
-    blocks.push(settings::changed(scenario));
+    blocks.push(settings::changed(scenario, "command line"));
     blocks.extend(egress(simulation, &summary));
     blocks.push(Block::heading(
         "Flows, densities, levels of service, exposure",
@@ -202,7 +202,11 @@ fn waits(scenario: &Scenario, places: &[PlaceResult]) -> Vec<Block> {
         true => Vec::new(),
         false => vec![
             Block::heading("Waiting areas and queues"),
-            Block::Table(table, "People: those who have left it.".to_owned()),
+            Block::Table(
+                table,
+                "People: those who have left it, each counted once. Mean wait: of a visit."
+                    .to_owned(),
+            ),
         ],
     }
 }

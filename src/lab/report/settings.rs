@@ -1,13 +1,17 @@
 //! The settings of a run that differ from the defaults.
 
+use serde::Deserialize;
 use serde_json::Value;
 
 use crate::output::document::Block;
 use crate::output::table::Table;
-use crate::scenario::{Scenario, settings, tidy};
+use crate::scenario::{Preset, Scenario, settings, tidy};
 
 /// Keys that the report shows elsewhere.
 const ELSEWHERE: [&str; 3] = ["name", "description", "preset"];
+
+/// Options that have another name than the key that they set.
+const OPTIONS: [(&str, &str); 2] = [("until", "duration_secs"), ("time-step", "time_step_secs")];
 
 struct Row {
     key: &'static str,
@@ -17,9 +21,23 @@ struct Row {
     meaning: String,
 }
 
-/// The numbers and words of a scenario that differ from the defaults, with their meanings.
-pub fn changed(scenario: &Scenario) -> Block {
+/// The numbers and words of a scenario that differ from the defaults, with their meanings. `by` is what has changed
+/// the values that are not those of the file.
+pub fn changed(scenario: &Scenario, by: &'static str) -> Block {
     let all = scenario.settings();
+    let preset = Preset::deserialize(&all["preset"]).unwrap_or_default();
+    let preset = preset.document();
+    let is_changed = |key: &str| {
+        let names = scenario.changes.iter();
+        let names = names.filter_map(|change| change.split(['=', ' ']).next());
+        let mut keys = names.map(|name| {
+            OPTIONS
+                .iter()
+                .find(|(option, _)| *option == name)
+                .map_or(name, |(_, key)| key)
+        });
+        keys.any(|changed| changed == key)
+    };
     let row = |doc: crate::scenario::SettingDoc| {
         let given = |document: &Value| {
             let parameter = document.get("parameters").and_then(|all| all.get(doc.key));
@@ -42,6 +60,8 @@ pub fn changed(scenario: &Scenario) -> Block {
             value,
             default,
             from: match (given(&scenario.document), is_parameter(doc.key)) {
+                _ if is_changed(doc.key) => by,
+                (Some(value), _) if given(&preset) == Some(value.clone()) => "preset",
                 (Some(_), _) => "scenario",
                 (None, true) => "profile",
                 (None, false) => "program",

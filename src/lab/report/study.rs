@@ -85,7 +85,7 @@ pub fn of_study(gathered: &Gathered, [command, report]: [&str; 2]) -> Result<Doc
             "{}: {} Settings of the first combination ({name}) that differ from the defaults:",
             scenario.name, scenario.description
         )));
-        blocks.push(settings::changed(scenario));
+        blocks.push(settings::changed(scenario, "study"));
     }
     let groups = scenarios.iter().flat_map(|one| &one.scene.groups);
     let profiles = distinct(groups.map(|group| group.blend.name.as_str()));

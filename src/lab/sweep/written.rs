@@ -93,6 +93,9 @@ impl Written {
             );
             return Err(self.invalid(Problem::new("", reason)));
         }
+        if let Some(what) = kinds::not_a_study(&document) {
+            return Err(self.invalid(Problem::new("", what)));
+        }
         let keys = self.keys(needs).map_err(|problem| self.invalid(problem))?;
         Ok((document, keys))
     }

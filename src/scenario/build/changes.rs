@@ -1,6 +1,6 @@
 //! When exits and doors open and close and waiting areas are released, by closing times and events.
 
-use crate::engine::journeys::{Change, ChangeKind, Kind, Place};
+use crate::engine::journeys::{Change, ChangeKind, Journeys, Kind, Place};
 use crate::scenario::error::quote::shown;
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::file::{Event, File};
@@ -110,4 +110,27 @@ fn accept(change: &Change, others: &[Change], event: &Event) -> Result<(), Probl
         change.at
     );
     Err(Problem::new("", reason))
+}
+
+/// Notes on events that open what is open: they do not close it before.
+pub fn idle(keys: &File, journeys: &Journeys) -> Vec<String> {
+    let note = |(k, event): (usize, &Event)| {
+        let name = event.open.as_ref()?;
+        let place = journeys
+            .places
+            .iter()
+            .position(|place| place.name == *name)?;
+        let changes = journeys.changes.iter();
+        let mut before =
+            changes.filter(|one| usize::from(one.place) == place && one.at < event.at_secs);
+        let last = before.next_back().map_or(ChangeKind::Open, |one| one.kind);
+        (last == ChangeKind::Open).then(|| {
+            format!(
+                "events[{k}]: `{}` is open already at {} s: the event has no effect; `closed_secs` closes it before",
+                shown(name),
+                event.at_secs
+            )
+        })
+    };
+    keys.events.iter().enumerate().filter_map(note).collect()
 }

@@ -88,9 +88,14 @@ impl Population<'_> {
                 Spacing::Random => ("at random places ", ", or set `spacing` to `grid`"),
                 Spacing::Grid => ("", ""),
             };
+            let inside = |body: &&Body| areas.iter().any(|area| area.contains(body.place));
+            let others = match self.bodies.iter().filter(inside).count() {
+                0 => String::new(),
+                others => format!(", beside {others} others that start there"),
+            };
             let reason = format!(
-                "{number} agents do not fit: about {fitting} stand {at}side by side in the free {size:.1} m² of the \
-                 area; use fewer, a larger area or a smaller `radius`{advice}"
+                "{number} agents do not fit: about {fitting} stand {at}side by side in the {size:.1} m² of floor of \
+                 the area{others}; use fewer, a larger area or a smaller `radius`{advice}"
             );
             Problem::new("", reason)
         })?;

@@ -11,10 +11,13 @@ use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Group, Scene};
 use crate::engine::ways::nearest_on;
 use crate::scenario::build::journeys::TO_EXIT;
-use crate::scenario::build::{eclipsed, leaving, through_walls, units};
+use crate::scenario::build::{changes, eclipsed, leaving, through_walls, units};
 use crate::scenario::error::quote::shown;
 use crate::scenario::file::File;
+use crate::scenario::keys::catalog;
 use crate::scenario::keys::people::Spacing;
+use crate::scenario::keys::places::Exit;
+use crate::scenario::keys::profiles::ProfileChoice;
 use crate::scenario::measurements::Measurement;
 
 /// Floors with a longer side are doubtful, meters.
@@ -26,13 +29,16 @@ const EMPTY: f64 = 0.01;
 /// Agents enter on the line of an exit if theirs is nearer, meters.
 const AT_EXIT: f64 = 0.1;
 
+/// Exits begin and end at walls that are nearer, meters.
+const AT_WALL: f64 = 1.0;
+
 /// Groups of which this share walks are walking groups.
 const SOME: f64 = 0.05;
 /// From this number of agents on, a note says how they choose their ways.
 const CROWD: u64 = 100;
 
-/// The notes on a complete scene that at most `entering` agents enter.
-pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
+/// The notes on a complete scene that at most `entering` agents enter, whose file has its end at `last`, seconds.
+pub fn notes(keys: &File, scene: &Scene, entering: u64, last: f64) -> Vec<String> {
     if entering == 0 {
         let none =
             "no agents enter: add `crowds`, `grids`, `agents`, `sources`, `entrances` or `from`";
@@ -40,7 +46,7 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
     }
     let floor = floor(keys, &scene.walls, entering).into_iter();
     floor
-        .chain(units::notes(keys, scene))
+        .chain(units::notes(keys, scene, last))
         .chain(eclipsed::notes(scene))
         .chain(through_walls::note(scene))
         .chain(endless(scene))
@@ -50,7 +56,9 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
         .chain(spectra(keys))
         .chain(at_exits(scene))
         .chain(unused(scene))
-        .chain(closed(keys, scene))
+        .chain(closed(scene, last))
+        .chain(changes::idle(keys, &scene.journeys))
+        .chain(afloat(keys, scene))
         .chain(unheeded(keys, scene))
         .chain(on_legs(keys, scene))
         .chain(crowded(keys, scene, entering))
@@ -98,8 +106,11 @@ fn unheeded(keys: &File, scene: &Scene) -> Vec<String> {
     });
     let mut notes: Vec<String> = idle.collect();
     let is_own = |group: &Group| group.motivation != keys.motivation;
-    let is_given =
-        scene.groups.iter().any(is_own) || zones.iter().any(|zone| zone.motivation > 0.0);
+    let profile = keys.profile.as_ref();
+    let is_own_profile = profile.is_some_and(|choice| !is_of_the_paper(choice));
+    let is_given = (is_own_profile && keys.motivation > 0.0)
+        || scene.groups.iter().any(is_own)
+        || zones.iter().any(|zone| zone.motivation > 0.0);
     let mut laws = scene
         .profiles()
         .filter_map(|profile| profile.walking?.headings().copied());
@@ -111,6 +122,11 @@ fn unheeded(keys: &File, scene: &Scene) -> Vec<String> {
         );
     }
     notes
+}
+
+/// Whether a profile is one of the paper, which know no motivation.
+fn is_of_the_paper(choice: &ProfileChoice) -> bool {
+    matches!(choice, ProfileChoice::Named(name) if catalog::NAMES.contains(&name.0.as_str()))
 }
 
 /// A note if agents with legs walk to a goal before the run ends: the law describes crowds that stand.
@@ -273,15 +289,14 @@ fn unused(scene: &Scene) -> Option<String> {
 }
 
 /// Notes on doors and exits that are closed for the whole run.
-fn closed(keys: &File, scene: &Scene) -> Vec<String> {
+fn closed(scene: &Scene, last: f64) -> Vec<String> {
     let journeys = &scene.journeys;
-    let end = keys.duration_secs.unwrap_or(f64::INFINITY);
     let places = || journeys.places.iter().zip(0..);
     let doors = places().filter(|(place, _)| matches!(place.kind, Kind::Door(_)));
     let exits = places().filter(|(place, _)| place.is_exit());
     let note = |list: &str, (k, (place, number)): (usize, (&Place, u16))| {
         let changes = journeys.changes.iter().filter(|one| one.place == number);
-        let first: Vec<&Change> = changes.take_while(|one| one.at < end).collect();
+        let first: Vec<&Change> = changes.take_while(|one| one.at < last).collect();
         let starts_closed = |one: &&Change| one.at <= 0.0 && one.kind == ChangeKind::Close;
         let opens = |one: &&Change| one.kind == ChangeKind::Open;
         let is_closed = first.iter().any(starts_closed) && !first.iter().any(opens);
@@ -296,6 +311,26 @@ fn closed(keys: &File, scene: &Scene) -> Vec<String> {
     let doors = doors.enumerate().filter_map(|door| note("doors", door));
     let exits = exits.enumerate().filter_map(|exit| note("exits", exit));
     doors.chain(exits).collect()
+}
+
+/// Notes on exits whose ends are far from all walls of a floor plan.
+fn afloat(keys: &File, scene: &Scene) -> Vec<String> {
+    let is_free = |end: Vector| {
+        let mut near = Vec::new();
+        scene.walls.near(end, AT_WALL, &mut near);
+        near.is_empty()
+    };
+    let exits = keys.exits.iter().enumerate().filter(|(_, exit)| {
+        let ends = exit.line.map(Vector::from);
+        keys.walkable_area.is_some() && ends.into_iter().all(is_free)
+    });
+    let note = |(k, exit): (usize, &Exit)| {
+        format!(
+            "exits[{k}]: no end of `{}` is at a wall, so people leave in the middle of the floor: draw it at a wall",
+            shown(&exit.name)
+        )
+    };
+    exits.map(note).collect()
 }
 
 /// Notes on the journeys after which agents stay on the floor, unless they end in waiting areas.

@@ -1,5 +1,7 @@
 //! Notes on agents that cannot leave, leave at once, or have no room where they start, enter, walk to and wait.
 
+use std::collections::BTreeSet;
+
 use crate::engine::agents::{NewAgent, RADIUS_RANGE, REFERENCE_RADIUS};
 use crate::engine::journeys::{Kind, Place};
 use crate::engine::math::Vector;
@@ -143,7 +145,7 @@ fn in_walls(keys: &File, scene: &Scene) -> Option<String> {
     ))
 }
 
-/// Notes on waypoints of which several agents at once keep each other.
+/// Notes on waypoints and goals from which several agents at once keep each other.
 fn narrow(scene: &Scene) -> Vec<String> {
     let is_alone = scene.agents.len() < 2 && scene.sources.is_empty() && scene.entrances.is_empty();
     let note = |place: &Place| {
@@ -159,5 +161,24 @@ fn narrow(scene: &Scene) -> Vec<String> {
             )
         })
     };
-    scene.journeys.places.iter().filter_map(note).collect()
+    let places = scene.journeys.places.iter().filter_map(note);
+    let used = scene
+        .agents
+        .iter()
+        .map(|agent| agent.group)
+        .collect::<BTreeSet<u16>>();
+    let goals = used.into_iter().filter_map(|k| {
+        let one = group(scene, k);
+        let within = one.removal_radius.filter(|&within| within < REFERENCE_RADIUS && !is_alone)?;
+        let is_one = scene.agents.iter().filter(|agent| agent.group == k).count() < 2;
+        (!is_one && one.journey.is_none()).then(|| {
+            format!(
+                "{}: agents leave within `remove_within`, {} m, of their goal, less than the radius of a body: agents \
+                 that come together keep each other from it; give 0.5 m or more",
+                shown(&one.name),
+                brief(within)
+            )
+        })
+    });
+    places.chain(goals).collect()
 }

@@ -2,11 +2,12 @@
 //! floor.
 
 use crate::engine::geometry::Ring;
-use crate::engine::journeys::Place;
+use crate::engine::journeys::{Kind, Place};
 use crate::engine::math::Vector;
 use crate::engine::scene::Scene;
 use crate::engine::ways::nearest_on;
 use crate::scenario::build::origin::{Member, Origins};
+use crate::scenario::error::quote::shown;
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::file::File;
 use crate::scenario::floor_plan::{FloorPlanError, Rings, is_line_on_floor, is_on_floor};
@@ -34,14 +35,43 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
     Ok(())
 }
 
+/// Rejects waypoints on the floors `behind` exits and entrances, to which people would walk through the line.
+pub fn check_waypoints(scene: &Scene, behind: &Rings) -> Result<(), Problem> {
+    let rings = rings(behind);
+    let waypoints = scene.journeys.places.iter();
+    let waypoints =
+        waypoints.filter(|place| matches!(place.kind, Kind::Line(_) | Kind::Disk { .. }));
+    for (k, place) in waypoints.enumerate() {
+        let points = match &place.kind {
+            Kind::Disk { at, .. } => vec![*at],
+            _ => place.line().map_or(Vec::new(), Vec::from),
+        };
+        let is_behind =
+            |p: &Vector| !is_on_line(scene, *p) && rings.iter().any(|ring| ring.contains(*p));
+        if points.iter().all(is_behind) {
+            let reason = format!(
+                "`{}` lies behind the line of an exit or entrance and outside of the walkable area; move it onto the \
+                 floor",
+                shown(&place.name)
+            );
+            return Err(Problem::new(format!("waypoints[{k}]"), reason));
+        }
+    }
+    Ok(())
+}
+
+fn rings(behind: &Rings) -> Vec<Ring> {
+    let rings = behind.iter().map(|ring| Ring::new(ring.clone()));
+    rings.filter_map(Result::ok).collect()
+}
+
 /// Single agents in obstacles start at the nearest free point, which may be this far away, meters.
 const NEAR: f64 = 2.0;
 
 /// Rejects agents of `agents`, `grids` and `sources` that start on the floors `behind` exits and entrances, or that
 /// would be moved there from an obstacle, and single ones that start far off the floor.
 pub fn check_starts(origins: &Origins, behind: &Rings) -> Result<(), Problem> {
-    let rings = behind.iter().map(|ring| Ring::new(ring.clone()));
-    let rings: Vec<Ring> = rings.filter_map(Result::ok).collect();
+    let rings = rings(behind);
     let scene = origins.scene;
     for (k, agent) in scene.agents.iter().enumerate() {
         let member = Member {

@@ -7,7 +7,6 @@ use crate::engine::scene::Scene;
 use crate::scenario::error::numbers::brief;
 use crate::scenario::error::quote::{shown, to_centimeters};
 use crate::scenario::file::File;
-use crate::scenario::keys::limits::DEFAULT_DURATION;
 use crate::scenario::keys::shapes::Point;
 
 /// Crowds do not run faster, m/s.
@@ -23,13 +22,13 @@ const MASSES: [f64; 2] = [0.1, 5.0];
 /// No line passes more people per meter and second.
 const MOST_PER_METER: f64 = 5.0;
 
-/// The notes.
-pub fn notes(keys: &File, scene: &Scene) -> Vec<String> {
+/// The notes. The file has its end at `last`, seconds.
+pub fn notes(keys: &File, scene: &Scene, last: f64) -> Vec<String> {
     let mut notes = speeds(keys, scene);
     notes.extend(slowed(scene));
     notes.extend(masses(keys, scene));
     notes.extend(flows(keys));
-    notes.extend(services(keys, scene));
+    notes.extend(services(scene, last));
     notes.extend(zones(scene));
     let radii = radii(keys, scene);
     notes.extend(radii.first().map(|(radius, place)| {
@@ -155,9 +154,8 @@ fn flows(keys: &File) -> Vec<String> {
     exits.chain(entrances).filter_map(note).collect()
 }
 
-/// Notes on queues in which the service of one person outlasts the run.
-fn services(keys: &File, scene: &Scene) -> Vec<String> {
-    let end = keys.duration_secs.unwrap_or(DEFAULT_DURATION);
+/// Notes on queues in which the service of one person outlasts the run, to `end`, seconds.
+fn services(scene: &Scene, end: f64) -> Vec<String> {
     let places = scene.journeys.places.iter();
     let slow = places.filter_map(|place| match &place.kind {
         Kind::Queue(queue) if queue.mean_service > end && end > 0.0 => Some((place, queue)),

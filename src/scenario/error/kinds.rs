@@ -60,6 +60,14 @@ pub fn not_a_scenario(document: &Value) -> Option<&'static str> {
     }
 }
 
+/// What a JSON document is that is given in place of a study, if it is neither that nor a scenario.
+pub fn not_a_study(document: &Value) -> Option<&'static str> {
+    let is_result = !document["state_sha256"].is_null() && !document["metrics"].is_null();
+    is_result.then_some(
+        "is the result of a run, not a study: its `settings` are a scenario; `sandbox compare A B` compares results",
+    )
+}
+
 /// Whether a JSON document is a scenario, by its keys.
 pub fn is_scenario(document: &Value) -> bool {
     const KEYS: [&str; 7] = [

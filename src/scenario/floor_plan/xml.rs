@@ -64,6 +64,11 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
             }
         }
     }
+    let all = elements(root, "subroom").count();
+    if shapes.is_empty() && all > 0 {
+        let reason = format!("has {all} <subroom>, none of them directly in a <room>");
+        return Err(wrong("geometry", reason));
+    }
     Ok(shapes)
 }
 

@@ -107,8 +107,22 @@ impl Draft {
     }
 
     /// Checks relations between values and places the agents. The name of the file `path` is the default name of the
-    /// scenario.
-    pub(super) fn built(self, path: &Path) -> Result<Scenario, Problem> {
+    /// scenario; the file without settings has its end at `last`, seconds, or the run if that is later.
+    pub(super) fn built(self, path: &Path, last: f64) -> Result<Scenario, Problem> {
+        // A part of the plan without effect is the likely cause of a place off the floor.
+        let of_plan = surroundings::without_effect(&self.keys).unwrap_or_default();
+        self.built_on_floor(path, last).map_err(|problem| {
+            match of_plan
+                .first()
+                .filter(|_| problem.reason.contains("outside of the walkable area"))
+            {
+                Some(note) => Problem::new(problem.path, format!("{}; {note}", problem.reason)),
+                None => problem,
+            }
+        })
+    }
+
+    fn built_on_floor(self, path: &Path, last: f64) -> Result<Scenario, Problem> {
         let keys = &self.keys;
         periodic::check_keys(keys)?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -128,6 +142,7 @@ impl Draft {
         overcrowded::check(keys, (&scene, &items), duration_secs)?;
         measurements::check(&keys.measurements, &scene.journeys.journeys)?;
         off_floor::check(keys, &scene)?;
+        off_floor::check_waypoints(&scene, &behind)?;
         off_floor::check_starts(&items.origins(keys, &scene), &behind)?;
         add_pushes(&mut scene, &keys.events)?;
         periodic::check(keys, &scene)?;
@@ -141,7 +156,7 @@ impl Draft {
         let placed = scene.agents.len() as u64;
         let fewer = self.need.initial.saturating_sub(placed); // crowds with a density
         let entering = self.need.entering - fewer;
-        notes.extend(doubts::notes(keys, &scene, entering));
+        notes.extend(doubts::notes(keys, &scene, entering, last));
         notes.extend(slits::note(&scene.walls));
         notes.extend(surroundings::without_effect(keys)?);
         let view = view::of(keys.view.as_ref(), &scene).under("view")?;

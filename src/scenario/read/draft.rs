@@ -99,11 +99,13 @@ impl Draft {
         let inputs = std::mem::take(&mut self.inputs);
         let ends = self.ends(inputs.without.as_ref());
         let late = self.late(ends);
-        let scenario = self.built(Path::new(&inputs.file));
+        let scenario = self.built(Path::new(&inputs.file), ends[1]);
         let mut scenario = scenario.map_err(|problem| inputs.blame(problem))?;
         scenario.notes.extend(late);
         scenario.notes.extend(late::idle(&scenario.scene, ends));
         scenario.notes.extend(late::short(&scenario.scene, ends));
+        scenario.notes.extend(late::missed(&scenario.scene, ends));
+        scenario.notes.extend(late::kept(&scenario.scene, ends));
         scenario.notes = scenario.notes.iter().map(|note| tidy(note)).collect();
         scenario.changes = inputs.changes();
         Ok(scenario)
@@ -182,7 +184,10 @@ impl Inputs {
         if let Some(document) = &self.without {
             let path = Path::new(&self.file);
             let alone = Draft::of(document.clone(), path);
-            if alone.and_then(|draft| draft.built(path)).is_ok() {
+            if alone
+                .and_then(|draft| draft.built(path, f64::INFINITY))
+                .is_ok()
+            {
                 let settings = self.settings.iter();
                 let mut settings: Vec<_> = settings.map(|(_, one)| format!(" {one}")).collect();
                 settings.dedup();

@@ -4,16 +4,19 @@
 use serde_json::Value;
 
 use crate::engine::agents::NewAgent;
+use crate::engine::entrance::Entrance;
+use crate::engine::journeys::{Kind, Place};
 use crate::engine::random::Purpose;
 use crate::engine::scene::Scene;
 use crate::scenario::error::numbers::brief;
 use crate::scenario::error::quote::shown;
 
-/// Lists, and the keys of their elements that say when something begins.
-const BEGIN: [(&str, &str); 3] = [
+/// Lists, and the keys of their elements that say when something begins, or people go on.
+const BEGIN: [(&str, &str); 4] = [
     ("events", "at_secs"),
     ("sources", "start_secs"),
     ("entrances", "from_secs"),
+    ("waiting_areas", "until_secs"),
 ];
 /// The same for what is measured.
 const MEASURED: [&str; 3] = ["at_secs", "from_secs", "start_secs"];
@@ -21,6 +24,8 @@ const MEASURED: [&str; 3] = ["at_secs", "from_secs", "start_secs"];
 const FLOW_UNTIL: [&str; 2] = ["flow_until", "until_secs"];
 /// Most agents are not faster than this quantile of their speeds.
 const FASTEST: f64 = 0.999;
+/// Nearly no agent waits for a shorter time than this quantile.
+const SHORTEST: f64 = 0.001;
 /// Most places in the note.
 const MOST_NAMED: usize = 4;
 
@@ -79,6 +84,59 @@ pub fn idle(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
     })
 }
 
+/// Notes on entrances with more agents than arrive before `last`, in a run that ends at `end`, seconds.
+pub fn missed(scene: &Scene, [end, last]: [f64; 2]) -> Vec<String> {
+    let note = |(k, entrance): (u32, &Entrance)| {
+        let planned = entrance.arrivals.planned()?;
+        let mut before = None;
+        let mut times = (0..planned).map_while(|arrival| {
+            before = entrance.arrivals.time(arrival, before, scene.seed, k);
+            before
+        });
+        let (mut arrived, mut ends_before) = (0, true);
+        for time in times.by_ref() {
+            if time > last {
+                ends_before = false;
+                break;
+            }
+            arrived += 1;
+        }
+        let until = match ends_before {
+            true => "`until_secs`".to_owned(),
+            false => format!("the end of the run, {} s", brief(end)),
+        };
+        // Entrances that begin after the end have a note of their own.
+        let begins = entrance.arrivals.first().is_some_and(|first| first <= last);
+        (arrived < planned && begins).then(|| {
+            format!(
+                "entrances[{k}]: {arrived} of the {planned} agents of `{}` arrive before {until}",
+                shown(&entrance.name)
+            )
+        })
+    };
+    let entrances = (0..).zip(&scene.entrances);
+    entrances.filter_map(note).collect()
+}
+
+/// Notes on waiting areas in which people wait for longer than the run, which ends at `end`, seconds.
+pub fn kept(scene: &Scene, [end, last]: [f64; 2]) -> Vec<String> {
+    let note = |place: &Place| {
+        let Kind::Waiting(waiting) = &place.kind else {
+            return None;
+        };
+        let lasting = waiting.lasting.as_ref()?.quantile(SHORTEST);
+        (lasting >= last && last > 0.0).then(|| {
+            format!(
+                "waiting_areas: agents wait in `{}` for {} s, and the run ends at {} s",
+                shown(&place.name),
+                brief(lasting),
+                brief(end)
+            )
+        })
+    };
+    scene.journeys.places.iter().filter_map(note).collect()
+}
+
 /// A note if no agent is so near to the exit or goal at which it leaves that it gets there before `last`, in a run that
 /// ends at `end`, seconds. Agents walk straight there for this.
 pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
@@ -112,6 +170,9 @@ pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
     };
     let needed: Option<Vec<f64>> = scene.agents.iter().map(needs).collect();
     let least = needed.filter(|_| is_all)?.into_iter().reduce(f64::min)?;
+    if least.is_infinite() {
+        return Some("preferred_speed: all agents have 0 m/s: nobody leaves".to_owned());
+    }
     (least > last).then(|| {
         let (end, least) = (brief(end), least.ceil());
         format!(

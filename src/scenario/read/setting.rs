@@ -43,7 +43,7 @@ impl FromStr for Setting {
     /// Reads the value as JSON, or as text if it is not JSON.
     fn from_str(text: &str) -> Result<Self, SettingError> {
         let (key, value) = text.split_once('=').ok_or(SettingError::NoValue)?;
-        let key = key.trim();
+        let key = &key.trim().replace('[', ".").replace(']', "");
         let as_json = serde_json::from_str(value).ok().filter(|_| !is_text(key));
         let value = as_json.unwrap_or_else(|| Value::from(value.trim()));
         Self::new(key, value, format!("--set {}", shown(text)))
