@@ -60,13 +60,13 @@ fn the_text_says_how_many_stand_outside_of_the_line_of_a_queue() {
     );
     assert!(number(&outside["longest_secs"]) <= 40.0 && number(&outside["people"]) <= 60.0);
     let expected = format!(
-        "{} before counter after {:.0} s, at up to {:.1} P/m² (up to {} outside of its line, at {:.0} s; {:.0} s \
+        "{} before counter after {:.0} s (up to {} outside of its line, at {:.0} s, at up to {:.1} P/m²; {:.0} s \
          each on average)",
         queue["agents"],
         number(&queue["at_secs"]),
-        number(&queue["density_per_m2"]),
         outside["agents"],
         number(&outside["at_secs"]),
+        number(&queue["density_per_m2"]),
         number(&outside["mean_secs"]),
     );
     assert!(line.contains(&expected), "{line}, not {expected}");

@@ -11,7 +11,7 @@ use crate::output::results as tables;
 use crate::runs::drive::{End, Run};
 use crate::runs::identity::Identity;
 use crate::runs::summary::{JourneyResult, PlaceResult, Summary, value};
-use crate::scenario::measurements::{HEADWAY, Integrity, Metric, Outside, STUCK_AFTER, StuckGroup};
+use crate::scenario::measurements::{HEADWAY, Integrity, Metric, STUCK_AFTER, StuckGroup};
 use crate::scenario::quote::shown;
 
 /// The summary, with version, identity, all settings, threads and run times.
@@ -154,25 +154,18 @@ fn overview(run: &Run, summary: &Summary) -> String {
     let queues = summary.longest_queues.iter();
     let queues = queues.map(|queue| {
         let (before, agents, secs) = (shown(&queue.before), queue.agents, queue.at_secs);
-        let outside = queue.outside.map_or(String::new(), |outside| {
-            let Outside {
-                agents,
-                at_secs,
-                mean_secs,
-                ..
-            } = outside;
-            format!(
-                " (up to {agents} outside of its line, at {at_secs:.0} s; {mean_secs:.0} s each on average)"
-            )
-        });
-        let whose = match queue.outside {
-            Some(_) => " outside of its line",
-            None => "",
-        };
         let density = queue.density_per_m2.map_or(String::new(), |density| {
-            format!(", at up to {density:.1} P/m²{whose}")
+            format!(", at up to {density:.1} P/m²")
         });
-        format!("{agents} before {before} after {secs:.0} s{density}{outside}")
+        let Some(outside) = queue.outside else {
+            return format!("{agents} before {before} after {secs:.0} s{density}");
+        };
+        // The density of a queue with a line is that of those outside of it.
+        format!(
+            "{agents} before {before} after {secs:.0} s (up to {} outside of its line, at {:.0} s{density}; {:.0} s \
+             each on average)",
+            outside.agents, outside.at_secs, outside.mean_secs
+        )
     });
     line("longest queue", listed(queues.collect(), "none"));
     let stuck = match summary.stuck {

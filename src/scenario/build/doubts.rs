@@ -29,8 +29,10 @@ const EMPTY: f64 = 0.01;
 /// Agents enter on the line of an exit if theirs is nearer, meters.
 const AT_EXIT: f64 = 0.1;
 
-/// Exits begin and end at walls that are nearer, meters.
+/// Exits begin, end or lead through walls that are nearer, meters.
 const AT_WALL: f64 = 1.0;
+/// The line of an exit is looked at in this many parts.
+const PARTS: u32 = 20;
 
 /// Groups of which this share walks are walking groups.
 const SOME: f64 = 0.05;
@@ -313,7 +315,7 @@ fn closed(scene: &Scene, last: f64) -> Vec<String> {
     doors.chain(exits).collect()
 }
 
-/// Notes on exits whose ends are far from all walls of a floor plan.
+/// Notes on exits that are far from all walls of a floor plan.
 fn afloat(keys: &File, scene: &Scene) -> Vec<String> {
     let is_free = |end: Vector| {
         let mut near = Vec::new();
@@ -321,12 +323,13 @@ fn afloat(keys: &File, scene: &Scene) -> Vec<String> {
         near.is_empty()
     };
     let exits = keys.exits.iter().enumerate().filter(|(_, exit)| {
-        let ends = exit.line.map(Vector::from);
-        keys.walkable_area.is_some() && ends.into_iter().all(is_free)
+        let [a, b] = exit.line.map(Vector::from);
+        let mut points = (0..=PARTS).map(|k| a.lerp(&b, f64::from(k) / f64::from(PARTS)));
+        keys.walkable_area.is_some() && points.all(is_free)
     });
     let note = |(k, exit): (usize, &Exit)| {
         format!(
-            "exits[{k}]: no end of `{}` is at a wall, so people leave in the middle of the floor: draw it at a wall",
+            "exits[{k}]: `{}` is at no wall, so people leave in the middle of the floor: draw it at a wall",
             shown(&exit.name)
         )
     };
