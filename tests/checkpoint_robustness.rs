@@ -5,6 +5,7 @@
 
 use std::fs::{self, File};
 use std::io::Write;
+use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use crate::common::bounded::cases;
@@ -32,8 +33,8 @@ fn memory_limit(bytes: usize) -> u64 {
     (2 << 20) + 300 * bytes as u64
 }
 
-/// A checkpoint taken during a run.
-fn whole() -> Vec<u8> {
+/// The first frames of a run.
+fn begun() -> (Scenario, Simulation, Metrics) {
     let scenario = Scenario::parse(SCENARIO, "f.json", &[]).unwrap();
     let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
     let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
@@ -42,6 +43,12 @@ fn whole() -> Vec<u8> {
         metrics.observe(&simulation);
     }
     simulation.evaluate().unwrap();
+    (scenario, simulation, metrics)
+}
+
+/// A checkpoint taken during a run.
+fn whole() -> Vec<u8> {
+    let (scenario, simulation, metrics) = begun();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("c");
     Checkpoint::of(&scenario, &simulation, &metrics)
@@ -117,6 +124,44 @@ fn a_checkpoint_with_changed_values_is_resumed_or_refused() {
     });
     let resumed = resumed.into_inner();
     assert!(resumed > 3_000, "{resumed} have values that make sense");
+}
+
+/// The error of resuming a checkpoint in which `from` is `to`, of the same length.
+fn refusal(from: &str, to: &str) -> String {
+    let whole = whole();
+    let payload = &whole[HEAD..];
+    let at = payload
+        .windows(from.len())
+        .rposition(|part| part == from.as_bytes());
+    let mut changed = payload.to_vec();
+    changed[at.unwrap()..][..from.len()].copy_from_slice(to.as_bytes());
+    let checkpoint = Checkpoint::parse(&sealed(&changed), Path::new("c")).unwrap();
+    let scenario = checkpoint.scenario(&[]).unwrap();
+    checkpoint
+        .resume(scenario)
+        .map(|_| ())
+        .unwrap_err()
+        .to_string()
+}
+
+#[test]
+fn what_measurements_have_seen_is_resumed_or_refused_with_their_number() {
+    let (.., metrics) = begun();
+    let seen = metrics.seen();
+    let names = [
+        "measurements[0]",
+        "measurements[1]",
+        "agents that are stuck",
+        "the overview",
+    ];
+    assert_eq!(seen.len(), names.len());
+    for (seen, name) in seen.iter().zip(names) {
+        let said = refusal(seen, &format!("?{}", &seen[1..]));
+        assert!(
+            said.starts_with(&format!("the state of {name}: ")),
+            "{said}"
+        );
+    }
 }
 
 #[test]

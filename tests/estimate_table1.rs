@@ -41,7 +41,7 @@ fn rows_stand_beside_the_values_of_the_paper_that_they_belong_to() {
     assert!(answers.missed().is_empty());
     let text = estimated(&answers).unwrap();
     let lines: Vec<&str> = text.lines().collect();
-    let paper = published().unwrap().table1.rows;
+    let paper = published().table1.rows;
     for (line, (profile, setting)) in lines[2..]
         .iter()
         .zip([("sph", "rest_density_max"), ("sf", "agent_stiffness")])

@@ -1,5 +1,7 @@
 //! Notes on agents that cannot leave, leave at once, or have no room where they enter and wait.
 
+use sandbox::engine::journeys::Kind;
+use sandbox::engine::simulation::Simulation;
 use sandbox::runs::notes;
 use serde_json::{Value, json};
 
@@ -164,4 +166,57 @@ fn shares_of_exits_are_of_all_agents_that_leave_also_at_goals() {
         (summary.arrived, exit.passed, exit.share),
         (20, 10, Some(0.5))
     );
+}
+
+#[test]
+fn a_run_that_is_empty_before_an_exit_closes_says_so() {
+    let early = |closed: Value| {
+        let mut document = room(20);
+        document["exits"][0]["closed_secs"] = closed;
+        let said = notes::of(&driven(&document));
+        said.into_iter()
+            .find(|note| note.starts_with("all have left"))
+    };
+    assert_eq!(early(json!([[0, 10]])), None);
+    let said = early(json!([[40, 45], [50, 55]])).unwrap();
+    assert!(
+        said.ends_with(
+            "s, before `ramp` closes at 40 s, and 3 later change(s) of exits and doors do not happen either"
+        ),
+        "{said}"
+    );
+}
+
+#[test]
+fn the_line_of_a_queue_ends_at_an_exit() {
+    let length = |path: Value| {
+        let mut document = room(20);
+        document["queues"] = json!([{"name": "q", "path": path, "service_secs": 1}]);
+        let scene = scenario(&document, &[]).unwrap().scene;
+        let places = scene.journeys.places.into_iter();
+        let mut lengths = places.filter_map(|place| match place.kind {
+            Kind::Queue(queue) => Some(queue.length),
+            _ => None,
+        });
+        lengths.next().unwrap()
+    };
+    // Up to the exit at x = 14, and up to the wall there.
+    let [at_exit, at_wall] = [4.0, 1.0].map(|y| length(json!([[3, y], [9, y]])));
+    assert!((at_exit - at_wall).abs() < 1e-9, "{at_exit}, {at_wall}");
+    assert!((10.0..11.0).contains(&at_exit), "{at_exit}");
+}
+
+#[test]
+fn moves_of_those_who_have_left_do_not_count() {
+    let document = room(20);
+    let scenario = scenario(&document, &[]).unwrap();
+    let mut simulation = Simulation::new(scenario.scene).unwrap();
+    let mut present = 0;
+    while simulation.frame().agents.count_present() > 0 {
+        simulation.evaluate().unwrap();
+        present += simulation.frame().agents.present().count() as u64;
+        simulation.integrate().unwrap();
+    }
+    assert_eq!(simulation.outcome().moves, present);
+    assert!(present > 1000);
 }

@@ -371,6 +371,16 @@ fn a_result_of_another_case_or_a_damaged_one_is_computed_again() {
             0 => _ = fs::copy(&files[0], &files[1]).unwrap(),
             _ => fs::write(&files[1], "{").unwrap(),
         }
+        // Until then it counts as failed, with its file.
+        let gathered = Gathered::of(&study, &Store::at(&out));
+        let states = gathered.states.iter().filter_map(|state| match state {
+            State::Failed(reason) => Some(reason.as_str()),
+            _ => None,
+        });
+        let [reason] = states.collect::<Vec<_>>()[..] else {
+            panic!("one cell is damaged");
+        };
+        assert!(reason.starts_with(files[1].to_str().unwrap()), "{reason}");
         let (tally, log) = run_in(&study, &out, Shard::WHOLE);
         assert_eq!((tally.kept, tally.finished), (1, 1));
         assert!(log.notes.lock().unwrap()[0].contains("computed again"));

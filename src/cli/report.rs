@@ -163,7 +163,7 @@ fn of_scenario(options: &ReportOptions, mut outputs: Outputs) -> Result<Document
             .iter()
             .map(|path| input(&("--geometry", path.clone()))),
     );
-    complete(&mut whole);
+    complete(&mut whole)?;
     let mut watched = Watched::new(&whole, &options.at);
     let mut run = Run::new(whole)?;
     Watched::prepare(&mut run.simulation);
@@ -220,7 +220,7 @@ impl Observer<Failure> for Watch<'_> {
 }
 
 /// Adds the measurements that every report has. They change no result.
-fn complete(scenario: &mut Scenario) {
+fn complete(scenario: &mut Scenario) -> Result<(), Failure> {
     let has = |is: fn(&Measurement) -> bool| scenario.measurements.iter().any(is);
     let has_journeys = !scenario.scene.journeys.journeys.is_empty();
     let wanted = [
@@ -239,8 +239,10 @@ fn complete(scenario: &mut Scenario) {
     ];
     for (name, _) in wanted.into_iter().filter(|(_, is_wanted)| *is_wanted) {
         let keys = serde_json::from_value(json!({ name: {} }));
-        scenario.measurements.extend(keys.ok());
+        let keys = keys.map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+        scenario.measurements.push(keys);
     }
+    Ok(())
 }
 
 /// The scenario and its settings, as typed into a shell.

@@ -239,7 +239,10 @@ impl Agents {
 
     /// The number of agents that are present.
     pub fn count_present(&self) -> usize {
-        self.present().count()
+        match self.trip.is_empty() {
+            true => self.len(),
+            false => self.present().count(),
+        }
     }
 
     /// ρ̂_i of the previous frame, P/m²; `None` for a newcomer.

@@ -236,12 +236,15 @@ fn way_left(simulation: &Simulation, i: usize) -> Option<WayLeft> {
             corners: vec![spot.into()],
         });
     }
-    let corners = ways.course_of(route).into_iter().map(Into::into);
+    let corners = ways.course_of(route);
+    // The route has the length from where the agent last looked for it.
+    let from = std::iter::once(&position).chain(&corners);
+    let legs = from.zip(&corners).map(|(from, to)| (to - from).norm());
     Some(WayLeft {
-        length: Some(route.length()).filter(|length| length.is_finite()),
+        length: route.length().is_finite().then(|| legs.sum()),
         next: ways.next(route).into(),
         heading: direction(agents.aim[i] - position).into(),
-        corners: corners.collect(),
+        corners: corners.into_iter().map(Into::into).collect(),
     })
 }
 

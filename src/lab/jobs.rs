@@ -31,7 +31,7 @@ pub fn each<T: Send + Sync>(
 /// Computes the jobs that are not in `store`, and returns all results in the order of the jobs.
 ///
 /// # Errors
-/// Some jobs failed, or their results cannot be stored. Finished jobs stay stored.
+/// Some jobs failed, or their results cannot be stored or read. Finished jobs stay stored.
 pub fn results(
     jobs: &[Job],
     store: &Store,
@@ -39,7 +39,7 @@ pub fn results(
 ) -> Result<Vec<Value>, LabError> {
     finished(&job::run(jobs, store, None, listener)?)?;
     let result = |job: &Job| {
-        let result = store.result(&job.key).unwrap_or_default();
+        let result = store.result(&job.key).map_err(LabError::Data)?;
         result.ok_or_else(|| LabError::missing(&job.name, "result"))
     };
     jobs.iter().map(result).collect()

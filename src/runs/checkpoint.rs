@@ -62,6 +62,17 @@ pub enum CheckpointError {
     },
 }
 
+/// Why a checkpoint cannot be resumed.
+#[derive(Debug, thiserror::Error)]
+pub enum ResumeError {
+    /// The state does not fit the scenario.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// What the measurements have seen does not fit them.
+    #[error("{0}")]
+    Measurements(String),
+}
+
 impl Checkpoint {
     /// The checkpoint of an evaluated frame that the measurements have observed.
     pub fn of(scenario: &Scenario, simulation: &Simulation, metrics: &Metrics) -> Self {
@@ -99,11 +110,14 @@ impl Checkpoint {
     /// Resumes `scenario`, which is the checkpoint's own but may end at another time.
     ///
     /// # Errors
-    /// The state does not match the scenario.
-    pub fn resume(self, scenario: Scenario) -> Result<Run, StateError> {
+    /// The state, or that of a measurement, does not match the scenario.
+    pub fn resume(self, scenario: Scenario) -> Result<Run, ResumeError> {
         let mut simulation = Simulation::resumed(scenario.scene.clone(), self.state)?;
         let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
-        metrics.resume(&self.seen, simulation.frame().clock.frame());
+        let frame = simulation.frame().clock.frame();
+        metrics
+            .resume(&self.seen, frame)
+            .map_err(ResumeError::Measurements)?;
         Ok(Run {
             scenario,
             simulation,

@@ -4,7 +4,7 @@ use crate::analysis::stability::{FITTED, Scheme, three_digits};
 use crate::engine::clock::SHORTEST_TIME_STEP;
 use crate::engine::forces::rates::Rates;
 use crate::engine::geometry::Walls;
-use crate::engine::journeys::{ChangeKind, Kind};
+use crate::engine::journeys::{Change, ChangeKind, Kind};
 use crate::engine::scene::Scene;
 use crate::engine::simulation::{EventKind, Limited, SPOT_RADIUS};
 use crate::runs::drive::{End, Run};
@@ -18,7 +18,11 @@ pub fn of(run: &Run) -> Vec<String> {
     let queues = run.metrics.longest_queues(&run.simulation);
     let packed = queues.iter().filter_map(LongestQueue::packed);
     let all = moved(run).into_iter().chain(waited(run));
-    let all = all.chain(packed).chain(idle_pushes(run)).chain(early(run));
+    let all = all
+        .chain(packed)
+        .chain(idle_pushes(run))
+        .chain(early(run))
+        .chain(unseen(run));
     all.map(|note| tidy(&note)).collect()
 }
 
@@ -100,6 +104,33 @@ fn idle_pushes(run: &Run) -> Vec<String> {
         )
     };
     idle.map(|event| note(&event.name)).collect()
+}
+
+/// A note if the run ended, because all had left, before an exit or a door opened or closed.
+fn unseen(run: &Run) -> Option<String> {
+    let simulation = &run.simulation;
+    let now = simulation.frame().clock.time();
+    let journeys = &simulation.scene().journeys;
+    let is_late = |change: &&Change| {
+        change.at > now
+            && change.at < run.scenario.duration_secs
+            && change.kind != ChangeKind::Release
+    };
+    let mut late = journeys.changes.iter().filter(is_late);
+    let first = late.next().filter(|_| run.end == Some(End::Empty))?;
+    let name = shown(&journeys.places[usize::from(first.place)].name);
+    let verb = match first.kind {
+        ChangeKind::Close => "closes",
+        _ => "opens",
+    };
+    let more = match late.count() {
+        0 => String::new(),
+        more => format!(", and {more} later change(s) of exits and doors do not happen either"),
+    };
+    Some(format!(
+        "all have left at {now:.1} s, before `{name}` {verb} at {} s{more}",
+        first.at
+    ))
 }
 
 /// A note if the run ended for want of arrivals before the last agents entered or the last place opened.

@@ -140,9 +140,14 @@ impl Store {
         files.iter().filter_map(read).collect()
     }
 
-    /// The failure of a job, if it failed; `None` if the file is damaged.
+    /// The failure of a job, if it failed; of a damaged file, what is wrong with it.
     pub fn failure(&self, key: &Identity) -> Option<Failure> {
-        self.read(key, FAILED).unwrap_or_default()
+        self.read(key, FAILED).unwrap_or_else(|message| {
+            Some(Failure {
+                message,
+                attempts: 0,
+            })
+        })
     }
 
     /// Stores a result, or the failure of a job.

@@ -5,6 +5,8 @@ use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
 use std::sync::OnceLock;
 
+use serde::Deserialize;
+
 /// Longest text that is read, bytes. A scenario with ten million corners takes 200 MB.
 pub const LONGEST_TEXT: u64 = 1 << 28;
 /// Approximate limit on the length of a line, bytes.
@@ -16,6 +18,15 @@ pub const LONGEST_LINE: u64 = 1 << 20;
 /// The file cannot be read, or has more than `most` bytes.
 pub fn bytes(path: &Path, most: u64) -> Result<Vec<u8>> {
     rest(File::open(path)?, most)
+}
+
+/// The value of a JSON file that is built into the program.
+///
+/// # Panics
+/// The file is not valid; tests read all of them.
+pub fn embedded<T: Deserialize<'static>>(file: &str, text: &'static str) -> T {
+    serde_json::from_str(text)
+        .unwrap_or_else(|error| panic!("{file}, which is built into the program: {error}"))
 }
 
 /// The byte-order mark with which some editors begin a text.

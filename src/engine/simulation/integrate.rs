@@ -75,16 +75,18 @@ impl Simulation {
         self.move_legs(self.crowd.clock.time_step(), motion);
     }
 
-    /// Moves all agents by a whole frame; counts moves stopped by walls and clamped speeds.
+    /// Moves all agents by a whole frame; counts the moves of those that are present, those stopped by walls, and
+    /// clamped speeds.
     pub(super) fn move_all(&mut self, motion: impl Fn(usize, Vector, Vector) -> Motion + Sync) {
         let moves = self.move_agents(self.crowd.clock.time_step(), motion);
-        let outcome = &mut self.crowd.outcome;
-        outcome.moves += self.crowd.agents.len() as u64;
-        for p in moves.contained {
-            outcome.contained.add(p);
+        let (agents, outcome) = (&self.crowd.agents, &mut self.crowd.outcome);
+        outcome.moves += agents.count_present() as u64;
+        let present = |(agent, start): (usize, Vector)| agents.is_present(agent).then_some(start);
+        for start in moves.contained.into_iter().filter_map(present) {
+            outcome.contained.add(start);
         }
-        for p in moves.clamped {
-            outcome.clamped.add(p);
+        for start in moves.clamped.into_iter().filter_map(present) {
+            outcome.clamped.add(start);
         }
     }
 
@@ -129,6 +131,7 @@ impl Simulation {
                         let near = near.map_or(&[][..], |(_, near)| near);
                         let most = max_speeds.get(from + k).copied();
                         let limits = Limits {
+                            agent: from + k,
                             speed: most.unwrap_or(scene.max_speed),
                             walls,
                             near,
@@ -302,6 +305,8 @@ pub(super) fn shift(positions: &[Vector], sorted_at: &[Vector], strips: &mut [Sh
 
 /// The limits of a move.
 struct Limits<'a> {
+    /// The index of the agent.
+    agent: usize,
     /// s_max, m/s.
     speed: f64,
     walls: &'a Walls,
@@ -312,10 +317,10 @@ struct Limits<'a> {
 /// Statistics of moves.
 #[derive(Default)]
 pub(super) struct Moves {
-    /// The starting points of the moves that were stopped at a wall, meters.
-    contained: Vec<Vector>,
-    /// The starting points of the moves after which the speed was clamped, meters.
-    clamped: Vec<Vector>,
+    /// The agents whose moves were stopped at a wall, with the starting points, meters.
+    contained: Vec<(usize, Vector)>,
+    /// The agents whose speed was clamped after the move, with the starting points, meters.
+    clamped: Vec<(usize, Vector)>,
     /// Largest squared distance of any agent from its position at the last sort, m².
     farthest: f64,
 }
@@ -334,7 +339,7 @@ impl Moves {
         let start = *position;
         *velocity = clamp_length(motion.velocity, limits.speed);
         if *velocity != motion.velocity {
-            self.clamped.push(start);
+            self.clamped.push((limits.agent, start));
         }
         let target = start + clamp_length(motion.way, limits.speed) * dt;
         if limits.near.is_empty() {
@@ -346,7 +351,7 @@ impl Moves {
         if let Some((_, wall)) = stopped {
             let normal = limits.walls.wall(wall).normal;
             *velocity -= normal * velocity.dot(&normal).min(0.0);
-            self.contained.push(start);
+            self.contained.push((limits.agent, start));
         }
     }
 

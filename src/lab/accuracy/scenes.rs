@@ -13,6 +13,7 @@ use crate::engine::simulation::Simulation;
 use crate::lab::error::LabError;
 use crate::lab::jobs::read;
 use crate::lab::sweep::Study;
+use crate::scenario::input::embedded;
 use crate::scenario::{Scenario, Setting, built_in};
 
 /// The way in which a scene is judged.
@@ -94,8 +95,7 @@ impl Scene {
 
     fn text(&self) -> Text {
         let path = Path::new("studies").join(self.study_name() + ".json");
-        let text = built_in(&path).and_then(|text| serde_json::from_str(text).ok());
-        text.unwrap_or_default()
+        built_in(&path).map_or_else(Text::default, |text| embedded(&self.study_name(), text))
     }
 
     /// A description, in one line.

@@ -88,7 +88,7 @@ impl Timed {
             let scenario = cases[0].scenario();
             let scenario = scenario.map_err(|error| invalid(error.into()))?;
             let secs = cases.iter().map(|case| {
-                let result = store.result(&case.key).unwrap_or_default();
+                let result = store.result(&case.key).map_err(LabError::Data)?;
                 let result = result.ok_or_else(|| LabError::missing(name(preset), "result"))?;
                 Ok(read::<RunResult>(&result)?.wall_secs)
             });

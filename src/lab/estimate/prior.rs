@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::limit::{REFERENCE_STEP, SIZES};
 use super::series::Means;
 use crate::analysis::statistics::MeanStd;
+use crate::scenario::input::embedded;
 
 /// General shares of the sizes of errors.
 const GENERAL: [f64; SIZES.len()] = [0.25, 0.35, 0.2, 0.13, 0.07];
@@ -77,7 +78,7 @@ impl Quantity {
 
 /// The results that ship with the program.
 static SHIPPED: LazyLock<Vec<Known>> =
-    LazyLock::new(|| serde_json::from_str(include_str!("knowledge.json")).unwrap_or_default());
+    LazyLock::new(|| embedded("knowledge.json", include_str!("knowledge.json")));
 
 impl Known {
     /// From the runs of a result; `None` if its value or its spread is 0, or if its name says no quantity.

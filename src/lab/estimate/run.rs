@@ -265,8 +265,7 @@ impl<'a> Runs<'a> {
                 let failure = store.failure(&case.key);
                 failure.map_or("no result".to_owned(), |failure| failure.message)
             };
-            let result = store.result(&case.key).unwrap_or_default();
-            result.ok_or_else(failure)
+            store.result(&case.key)?.ok_or_else(failure)
         };
         Ok(cases.iter().map(result).collect())
     }

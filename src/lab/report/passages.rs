@@ -94,7 +94,8 @@ impl Passages {
             .table();
         let caption = "Free width: the length of the line without walls on it or flush with it. Open: by timetable and \
                        events. At most: the limit `most_per_sec` of an exit. P/(m s): the people after the first \
-                       one, per meter of free width and second between the first and the last one.";
+                       one, per meter of free width and second between the first and the last one. Waypoints count \
+                       the people who have them as a stage.";
         (!rows.is_empty()).then(|| Block::Table(table, caption.to_owned()))
     }
 }

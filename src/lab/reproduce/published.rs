@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::lab::error::LabError;
+use crate::scenario::input::embedded;
 
 /// All values, with their source.
 #[derive(Debug, Clone, Deserialize)]
@@ -51,13 +51,9 @@ pub struct Varied {
     pub value: f64,
 }
 
-/// Reads the values that ship with the program.
-///
-/// # Errors
-/// The file is not JSON of this form.
-pub fn published() -> Result<Published, LabError> {
-    let invalid = |error| LabError::Data(format!("published.json: {error}"));
-    serde_json::from_str(include_str!("published.json")).map_err(invalid)
+/// The values that the paper published.
+pub fn published() -> Published {
+    embedded("published.json", include_str!("published.json"))
 }
 
 /// A profile in the paper's notation: `rvo->sph` is RVO→SPH.

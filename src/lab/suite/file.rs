@@ -7,7 +7,7 @@ use super::known::check_cases;
 use crate::lab::sweep::{
     Changes, DataFile, FOLDER, PROFILE, Study, StudyError, Written, check_keys,
 };
-use crate::scenario::ScenarioError;
+use crate::scenario::{Problem, ScenarioError, in_plain_words};
 
 /// A study with expected results.
 pub struct Suite {
@@ -44,7 +44,13 @@ impl Suite {
         let (_, mut keys) = from.parsed::<File>("`cases`")?;
         let mut grid = keys.grid.0.into_iter();
         let profiles = grid.find(|(key, _)| key == PROFILE);
-        let profiles = profiles.and_then(|(_, names)| serde_json::from_value(names).ok());
+        let profiles = profiles.map(|(_, names)| serde_json::from_value(names));
+        let profiles = profiles.transpose().map_err(|error| {
+            from.invalid(Problem::new(
+                format!("grid.{PROFILE}"),
+                in_plain_words(&error.to_string()),
+            ))
+        })?;
         let profiles: Vec<String> = profiles.unwrap_or_default();
         check_cases(&keys.cases, &profiles).map_err(|problem| from.invalid(problem))?;
         let cases = keys.cases.iter_mut();

@@ -70,6 +70,7 @@ impl<'a> Gathered<'a> {
         let found = |cell: &Cell| (store.result(&cell.case.key), store.failure(&cell.case.key));
         let state = |cell: &Cell| match found(cell) {
             (Ok(Some(result)), _) => State::Finished(Box::new(result)),
+            (Err(damaged), _) => State::Failed(damaged),
             (_, Some(failure)) => State::Failed(failure.message),
             (_, None) => State::Missing,
         };

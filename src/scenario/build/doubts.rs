@@ -34,6 +34,9 @@ const AT_WALL: f64 = 1.0;
 /// The line of an exit is looked at in this many parts.
 const PARTS: u32 = 20;
 
+/// The most unused places that a note names.
+const NAMED: usize = 3;
+
 /// Groups of which this share walks are walking groups.
 const SOME: f64 = 0.05;
 /// From this number of agents on, a note says how they choose their ways.
@@ -42,9 +45,17 @@ const CROWD: u64 = 100;
 /// The notes on a complete scene that at most `entering` agents enter, whose file has its end at `last`, seconds.
 pub fn notes(keys: &File, scene: &Scene, entering: u64, last: f64) -> Vec<String> {
     if entering == 0 {
-        let none =
-            "no agents enter: add `crowds`, `grids`, `agents`, `sources`, `entrances` or `from`";
-        return vec![none.to_owned()];
+        let none = match scene.entrances.first() {
+            Some(entrance) => format!(
+                "no agents enter: no times, rate or number of the entrance `{}` let any in",
+                shown(&entrance.name)
+            ),
+            None => {
+                "no agents enter: add `crowds`, `grids`, `agents`, `sources`, `entrances` or `from`"
+                    .to_owned()
+            }
+        };
+        return vec![none];
     }
     let floor = floor(keys, &scene.walls, entering).into_iter();
     floor
@@ -280,13 +291,17 @@ fn unused(scene: &Scene) -> Option<String> {
     let others =
         others.map(|(_, place)| format!("the {} `{}`", place.kind.name(), shown(&place.name)));
     let names: Vec<String> = idle.chain(others).collect();
-    let (first, more) = names.split_first()?;
-    let more = match more.len() {
+    if names.is_empty() {
+        return None;
+    }
+    let (named, others) = names.split_at(names.len().min(NAMED));
+    let more = match others.len() {
         0 => String::new(),
         count => format!(" and {count} more"),
     };
     Some(format!(
-        "no agents use {first}{more}; give it to a crowd or a journey, or remove it"
+        "no agents use {}{more}; give it to a crowd or a journey, or remove it",
+        named.join(", ")
     ))
 }
 

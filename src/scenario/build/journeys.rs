@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::engine::geometry::Walls;
 use crate::engine::journeys::{Choice, Journey, JourneyStage, Journeys, Kind, Place};
+use crate::engine::math::Vector;
 use crate::engine::scene::RouteChoice;
 use crate::scenario::build::changes::changes;
 use crate::scenario::build::people::MOST_NUMBERED;
@@ -91,8 +92,11 @@ impl Found<'_> {
                 .extend(note.map(|note| format!("{place}.{note}")));
             self.add("waiting_areas", k, &given.name, Ok(kind))?;
         }
+        let exits = keys.exits.iter().map(|exit| exit.line);
+        let lines = exits.chain(keys.entrances.iter().map(|entrance| entrance.line.0));
+        let lines: Vec<[Vector; 2]> = lines.map(|line| line.map(Vector::from)).collect();
         for (k, given) in keys.queues.iter().enumerate() {
-            let queue = queue(given, self.walls);
+            let queue = queue(given, self.walls, &lines);
             self.add("queues", k, &given.name, queue)?;
         }
         for (k, given) in keys.doors.iter().enumerate() {

@@ -84,7 +84,9 @@ pub fn waypoint(given: &places::Waypoint) -> Result<Kind, Problem> {
 }
 
 /// A queue among `walls`.
-pub fn queue(given: &places::Queue, walls: &Walls) -> Result<Kind, Problem> {
+///
+/// The queue goes on beyond its path up to a wall, or to one of `lines`: those of exits and entrances.
+pub fn queue(given: &places::Queue, walls: &Walls, lines: &[[Vector; 2]]) -> Result<Kind, Problem> {
     let path: Vec<Vector> = given.path.iter().map(|&p| p.into()).collect();
     if path.len() < 2 {
         let reason = "needs at least 2 points: the front, and where the queue goes on";
@@ -106,8 +108,10 @@ pub fn queue(given: &places::Queue, walls: &Walls) -> Result<Kind, Problem> {
         length += way.norm();
         tail = (pair[1], direction(way) * LONGEST_TAIL);
     }
-    let wall = first_wall(walls, tail.0, tail.0 + tail.1);
-    length += wall.map_or(f64::INFINITY, |part| {
+    let end = tail.0 + tail.1;
+    let lines = lines.iter().filter_map(|line| meets([tail.0, end], *line));
+    let limit = lines.chain(first_wall(walls, tail.0, end)).reduce(f64::min);
+    length += limit.map_or(f64::INFINITY, |part| {
         (part * LONGEST_TAIL - TAIL_GAP).max(0.0)
     });
     let service = given.service_secs.times().under("service_secs")?;
@@ -125,6 +129,14 @@ pub fn queue(given: &places::Queue, walls: &Walls) -> Result<Kind, Problem> {
 fn first_wall(walls: &Walls, a: Vector, b: Vector) -> Option<f64> {
     let near = walls.near_any(&[a, b], 0.0);
     walls.first_crossing(a, b, &near).map(|(part, _)| part)
+}
+
+/// The part of the way from `a` to `b` up to a line, if it crosses it.
+fn meets([a, b]: [Vector; 2], [c, d]: [Vector; 2]) -> Option<f64> {
+    let (way, line) = (b - a, d - c);
+    let cross = way.perp(&line);
+    let [part, along] = [(c - a).perp(&line) / cross, (c - a).perp(&way) / cross];
+    (cross != 0.0 && part > 0.0 && part <= 1.0 && (0.0..=1.0).contains(&along)).then_some(part)
 }
 
 /// A line that a person fits through.

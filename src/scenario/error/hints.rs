@@ -73,6 +73,9 @@ fn rounded(value: f64) -> String {
 
 /// What is not JSON in a text at this line and column, both from 1, and what to write; `None` if that is not clear.
 pub fn of_syntax(text: &str, line: usize, column: usize) -> Option<String> {
+    if text.trim().is_empty() {
+        return Some("the file is empty: a scenario is an object, {…}".to_owned());
+    }
     if text.trim_start().starts_with('<') {
         return Some(
             "this is XML or HTML, not JSON: a floor plan is named in `walkable_area`".to_owned(),

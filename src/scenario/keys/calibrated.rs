@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
+use crate::scenario::input::embedded;
 use crate::scenario::keys::parameters::Parameters;
 
 /// A calibrated profile.
@@ -23,10 +24,8 @@ pub struct Calibrated {
 }
 
 /// All calibrated profiles.
-static ALL: LazyLock<Vec<Calibrated>> = LazyLock::new(|| {
-    let text = include_str!("calibrated.json");
-    serde_json::from_str(text).unwrap_or_default() // a test reads it
-});
+static ALL: LazyLock<Vec<Calibrated>> =
+    LazyLock::new(|| embedded("calibrated.json", include_str!("calibrated.json")));
 
 /// All calibrated profiles.
 pub fn all() -> &'static [Calibrated] {

@@ -75,7 +75,7 @@ impl Measure for Exposure {
             })
         };
         let dense = DENSITIES.iter().flat_map(|density| {
-            let above = format!("above {density} P/m²");
+            let above = format!("above {density} P/m² (h = √5 m)");
             let short = format!("above_{density}");
             let alarm = [
                 (

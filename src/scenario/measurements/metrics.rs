@@ -7,6 +7,7 @@ use super::running::Running;
 use super::stuck::{self, Stuck};
 use super::{HighestDensity, LongestQueue, Measure, Measurement, StuckGroup};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::quote::shown_message;
 
 /// A measured value.
 #[derive(Debug, Clone, PartialEq)]
@@ -117,16 +118,34 @@ impl Metrics {
             .collect()
     }
 
-    /// Restores what was [`seen`](Self::seen) up to and in frame number `frame`; what does not match is ignored.
-    pub fn resume(&mut self, seen: &[String], frame: u64) {
+    /// Restores what was [`seen`](Self::seen) up to and in frame number `frame`.
+    ///
+    /// # Errors
+    /// It is that of other measurements: which one does not fit, and why.
+    pub fn resume(&mut self, seen: &[String], frame: u64) -> Result<(), String> {
         self.observed = Some(frame);
-        let running = self.running.iter_mut().map(AsMut::as_mut);
-        let stuck: &mut dyn Running = &mut self.stuck;
-        let mut seen = seen.iter();
-        for (measurement, seen) in running.chain([stuck]).zip(&mut seen) {
-            measurement.resume(seen);
+        let [of_all @ .., stuck, overview] = seen else {
+            return Err("it has no measurements".to_owned());
+        };
+        if of_all.len() != self.running.len() {
+            let [has, wanted] = [of_all.len(), self.running.len()];
+            return Err(format!(
+                "it has {has} measurements, and the scenario {wanted}"
+            ));
         }
-        let overview = seen.next().and_then(|seen| serde_json::from_str(seen).ok());
-        self.overview = overview.unwrap_or_default();
+        for (k, (measurement, seen)) in self.running.iter_mut().zip(of_all).enumerate() {
+            let resumed = measurement.resume(seen);
+            resumed.map_err(|error| defect(&format!("measurements[{k}]"), &error))?;
+        }
+        let stuck = self.stuck.resume(stuck);
+        stuck.map_err(|error| defect("agents that are stuck", &error))?;
+        let overview = serde_json::from_str(overview);
+        self.overview = overview.map_err(|error| defect("the overview", &error))?;
+        Ok(())
     }
+}
+
+/// What is wrong with the state of a measurement.
+fn defect(of: &str, error: &serde_json::Error) -> String {
+    format!("the state of {of}: {}", shown_message(&error.to_string()))
 }

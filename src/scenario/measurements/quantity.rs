@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use super::Measurement;
+use crate::scenario::input::embedded;
 
 /// A measurement of each kind that has values, with usual keys.
 const EXAMPLES: &str = include_str!("examples.json");
@@ -23,14 +24,13 @@ pub struct Quantity {
 impl Measurement {
     /// The names of all measurements that have values, each with what it measures, for usual keys.
     pub fn all_quantities() -> Vec<(String, Vec<Quantity>)> {
-        let examples: Vec<BTreeMap<String, Value>> =
-            serde_json::from_str(EXAMPLES).unwrap_or_default();
-        let quantities = examples.into_iter().filter_map(|example| {
-            let name = example.keys().next()?.clone();
-            let measurement: Self = serde_json::from_value(serde_json::json!(example)).ok()?;
-            Some((name, measurement.quantities()))
-        });
-        quantities.collect()
+        let names: Vec<BTreeMap<String, Value>> = embedded("examples.json", EXAMPLES);
+        let names = names
+            .into_iter()
+            .filter_map(|example| example.into_keys().next());
+        let examples: Vec<Self> = embedded("examples.json", EXAMPLES);
+        let quantities = examples.iter().map(Self::quantities);
+        names.zip(quantities).collect()
     }
 }
 

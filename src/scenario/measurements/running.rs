@@ -16,7 +16,7 @@ pub trait Running: Send + Sync {
     fn values(&self, simulation: &Simulation) -> Vec<Option<f64>>;
     fn data(&self) -> Option<(String, Value)>;
     fn seen(&self) -> Value;
-    fn resume(&mut self, seen: &str);
+    fn resume(&mut self, seen: &str) -> serde_json::Result<()>;
 }
 
 /// A measurement that has seen nothing yet.
@@ -58,9 +58,8 @@ impl<M: Measure> Running for (M, M::Seen) {
         serde_json::to_value(&self.1).unwrap_or_default()
     }
 
-    fn resume(&mut self, seen: &str) {
-        if let Ok(seen) = serde_json::from_str(seen) {
-            self.1 = seen;
-        }
+    fn resume(&mut self, seen: &str) -> serde_json::Result<()> {
+        self.1 = serde_json::from_str(seen)?;
+        Ok(())
     }
 }

@@ -5,6 +5,8 @@ use std::path::{Component, Path, PathBuf};
 use include_dir::{Dir, include_dir};
 use serde_json::Value;
 
+use crate::scenario::input::embedded;
+
 /// The folder `scenarios/`.
 static FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios");
 
@@ -47,7 +49,7 @@ impl Shipped {
 
     /// The file's `description`.
     pub fn description(&self) -> String {
-        let document: Value = serde_json::from_str(self.text).unwrap_or_default();
+        let document: Value = embedded(self.name, self.text);
         document["description"]
             .as_str()
             .unwrap_or_default()
