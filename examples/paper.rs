@@ -115,13 +115,13 @@ fn mean_density(before: f64, density: f64) -> f64 {
 /// Step 1B. Reading: walls have ρ_i⁰ of the previous frame; in an agent's first frame ρ̂_i is the density from agents.
 fn update_density_and_pressure(crowd: &mut Crowd, n: usize) {
     let i = &crowd.agents[n];
-    let rest_density = |mean: f64| mean.clamp(REST_DENSITY_MIN, crowd.behavior.rest_density_max);
+    let clamped = |mean: f64| mean.clamp(REST_DENSITY_MIN, crowd.behavior.rest_density_max);
     let by_agents: f64 = crowd.agents.iter().map(|j| density_by_agent(i, j)).sum();
     let before = i.mean_density.unwrap_or(by_agents);
-    let by_wall = |p_k| density_by_wall(i, rest_density(before), &p_k);
+    let by_wall = |p_k| density_by_wall(i, clamped(before), &p_k);
     let by_walls: f64 = hidden_regions(crowd, i).map(by_wall).sum();
     let mean = mean_density(before, by_agents + by_walls);
-    let rest_density = rest_density(mean);
+    let rest_density = clamped(mean);
     let i = &mut crowd.agents[n];
     (i.density, i.density_by_walls) = (by_agents + by_walls, by_walls);
     (i.mean_density, i.rest_density) = (Some(mean), rest_density);
@@ -197,8 +197,8 @@ pub fn acting(behavior: &Behavior, density: f64) -> Vec<(&Profile, f64)> {
 pub fn acceleration(crowd: &Crowd, i: &Agent) -> Vector {
     let acting = acting(&crowd.behavior, i.density).into_iter();
     let weighted = acting.map(|(profile, weight)| {
-        let terms = terms(crowd, i, profile).into_iter();
-        terms.map(|(_, term)| term).sum::<Vector>() * weight
+        let felt = terms(crowd, i, profile).into_iter();
+        felt.map(|(_, term)| term).sum::<Vector>() * weight
     });
     weighted.sum()
 }
@@ -361,7 +361,7 @@ fn contact_by_wall(i: &Agent, o_k: &Wall, profile: &Profile) -> Vector {
 
 // §5.5 Navigation profiles and parameter settings
 
-/// `sf`, `rvo`, `sf+sph`, `rvo+sph` or `sph`.
+/// `sf`, `rvo`, `sf+sph`, `rvo+sph` or `sph`, with its K^ag and K^obs.
 fn profile(name: &str) -> Result<Profile, String> {
     let (navigation, sph) = match name {
         "sf" => (Navigation::Social, false),
@@ -381,7 +381,7 @@ fn profile(name: &str) -> Result<Profile, String> {
     })
 }
 
-/// A profile, or the blend `sf->sph` or `rvo->sph`, also written `sf-sph` and `rvo-sph`.
+/// A profile, or the blend `sf->sph` or `rvo->sph` with ρ^j of 2 and 4, also written `sf-sph` and `rvo-sph`.
 pub fn behavior(name: &str) -> Result<Behavior, String> {
     let profiles = match name.split_once("->").or(name.split_once('-')) {
         Some((low, high)) => vec![(profile(low)?, 2.0), (profile(high)?, 4.0)],
@@ -389,8 +389,8 @@ pub fn behavior(name: &str) -> Result<Behavior, String> {
     };
     Ok(Behavior {
         profiles,
-        rest_density_max: 5.0,
-        viscosity: 0.0,
+        rest_density_max: 5.0, // ρ⁰max
+        viscosity: 0.0,        // μ
     })
 }
 

@@ -385,7 +385,10 @@ fn places_and_journeys_without_agents_are_noted() {
     room["waypoints"] = json!([{"name": "a", "at": [4, 5]}, {"name": "b", "at": [6, 5]}]);
     room["journeys"] = json!([{"name": "long", "stages": ["a", "b", "east"]}, {"name": "short", "stages": ["east"]}]);
     for (used, said) in [
-        ("short", "no agents use the journey `long` and 2 more"),
+        (
+            "short",
+            "no agents use the journey `long`, the waypoint `a`, the waypoint `b`;",
+        ),
         ("long", "no agents use the journey `short`;"),
     ] {
         room["crowds"][0]["journey"] = json!(used);

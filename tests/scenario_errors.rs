@@ -69,7 +69,10 @@ fn every_broken_value_is_reported_with_its_place_and_reason() {
 
 /// Broken texts and the expected messages.
 const BROKEN_TEXTS: &[[&str; 2]] = &[
-    ["", "f.json: line 1, column 0: the text ends within a value"],
+    [
+        "",
+        "f.json: line 1, column 0: the file is empty: a scenario is an object, {…}",
+    ],
     [
         "{\"seed\": 1,}",
         "f.json: line 1, column 12: a comma before a closing bracket; remove it",

@@ -12,7 +12,7 @@ use crate::scenario::measurements::LongestQueue;
 use crate::scenario::quote::shown;
 use crate::scenario::{automatic_step, doubtful_radius, tidy};
 
-/// Notes on displaced agents, stopped moves, clamped speeds, agents that waited for room, queues that were too long for
+/// Notes on displaced agents, stopped move, clamped speeds, agents that waited for room, queues that were too long for
 /// their line or too dense, and pushes without agents.
 pub fn of(run: &Run) -> Vec<String> {
     let queues = run.metrics.longest_queues(&run.simulation);
@@ -26,7 +26,7 @@ pub fn of(run: &Run) -> Vec<String> {
     all.map(|note| tidy(&note)).collect()
 }
 
-/// Notes on agents and moves that were corrected.
+/// Notes on agents that were moved, and on stopped moves and clamped speeds if they are 1 % of all moves or more.
 fn moved(run: &Run) -> Vec<String> {
     let (scene, outcome) = (run.simulation.scene(), run.simulation.outcome());
     let mut notes = Vec::new();
@@ -38,13 +38,14 @@ fn moved(run: &Run) -> Vec<String> {
              free point (the first: {first})"
         ));
     }
-    if outcome.contained.count > 0 {
+    let is_noted = |limited: &Limited| 100 * limited.count >= outcome.moves.max(1);
+    if is_noted(&outcome.contained) {
         let moves = limited(&outcome.contained, outcome.moves, &scene.walls);
         notes.push(format!(
             "walls stopped {moves}, which would have crossed them"
         ));
     }
-    if outcome.clamped.count > 0 {
+    if is_noted(&outcome.clamped) {
         let mut groups = scene.groups.iter();
         let differ = groups.any(|group| group.traits.preferred_speed.is_some());
         let most = match differ {
@@ -208,14 +209,10 @@ fn displaced(scene: &Scene, agent: u32) -> String {
     format!("agent {agent}{}", from.unwrap_or_default())
 }
 
-/// The number of limited moves among all `moves`, and the place where most of them began.
+/// The share of limited moves among all `moves`, and the place where most of them began.
 fn limited(limited: &Limited, moves: u64, walls: &Walls) -> String {
     let count = limited.count;
     let percent = 100.0 * count as f64 / moves.max(1) as f64;
-    let share = match percent {
-        0.095.. => format!("{percent:.1} % of all moves"),
-        _ => format!("{count} of {moves} moves"),
-    };
     let place = limited.spot().map(|(at, there)| {
         // The middle of a cell may lie off the floor.
         let solid = walls.obstacle_at(at);
@@ -230,5 +227,5 @@ fn limited(limited: &Limited, moves: u64, walls: &Walls) -> String {
             at.x, at.y
         )
     });
-    share + &place.unwrap_or_default()
+    format!("{percent:.1} % of all moves{}", place.unwrap_or_default())
 }

@@ -62,7 +62,7 @@ pub const NUMBERS: [Number; 8] = [
     ),
     (
         HIGHEST,
-        "the highest SPH density at an agent: the kernel of the model (Eq. 5) with a support radius of 1 m over the \
+        "the highest SPH density at an agent: the kernel of the model (Eq. 13) with a support radius of 1 m over the \
          agent itself and the agents and walls around it; a person of mass 1 has 1.27 P/m² alone. \
          Observed in every coarse frame",
         |run| run.highest_density.map(|highest| highest.density_per_m2),

@@ -13,6 +13,8 @@ use crate::scenario::keys::shapes::Point;
 const FAST: f64 = 4.0;
 /// People who walk are not slower, m/s.
 const SLOW: f64 = 0.2;
+/// The share of the slowest, and of the fastest agents, whose speeds are looked at.
+const RARE: f64 = 0.05;
 /// No zone of floor makes people this many times as fast: moving walkways add half of the walking speed.
 const FASTER: f64 = 2.0;
 /// The bodies of people are not narrower or wider than these multiples of the radii of adults.
@@ -61,6 +63,7 @@ fn is_doubtful(radius: f64) -> bool {
 
 /// Notes on preferred speeds above those of running crowds, and below those of people who walk.
 fn speeds(keys: &File, scene: &Scene) -> Vec<String> {
+    let is_odd = |speed: f64| speed > FAST || (speed > 0.0 && speed < SLOW);
     let mut found = Vec::new();
     let own = (scene.preferred_speed, "preferred_speed".to_owned());
     found.push(own);
@@ -71,9 +74,18 @@ fn speeds(keys: &File, scene: &Scene) -> Vec<String> {
     for group in &scene.groups {
         let speed = group.traits.preferred_speed.as_ref();
         let place = || format!("preferred_speed of {}", shown(&group.name));
-        found.extend(speed.map(|speed| (speed.mean(), place())));
+        let Some(speed) = speed else {
+            continue;
+        };
+        let tails = [RARE, 1.0 - RARE].map(|share| speed.quantile(share));
+        let tail = tails
+            .into_iter()
+            .find(|speed| is_odd(*speed) && *speed != 0.0);
+        found.push(match tail.filter(|_| !is_odd(speed.mean())) {
+            Some(tail) => (tail, format!("{}, of one agent in 20", place())),
+            None => (speed.mean(), place()),
+        });
     }
-    let is_odd = |speed: f64| speed > FAST || (speed > 0.0 && speed < SLOW);
     let odd = found.into_iter().filter(|(speed, _)| is_odd(*speed));
     let note = |(speed, place): (f64, String)| {
         let than = match speed > FAST {

@@ -89,19 +89,16 @@ pub fn missed(scene: &Scene, [end, last]: [f64; 2]) -> Vec<String> {
     let note = |(k, entrance): (u32, &Entrance)| {
         let planned = entrance.arrivals.planned()?;
         let mut before = None;
-        let mut times = (0..planned).map_while(|arrival| {
+        let times = (0..planned).map_while(|arrival| {
             before = entrance.arrivals.time(arrival, before, scene.seed, k);
             before
         });
-        let (mut arrived, mut ends_before) = (0, true);
-        for time in times.by_ref() {
-            if time > last {
-                ends_before = false;
-                break;
-            }
+        let mut times = times.peekable();
+        let mut arrived = 0;
+        while times.next_if(|&time| time <= last).is_some() {
             arrived += 1;
         }
-        let until = match ends_before {
+        let until = match times.peek().is_none() {
             true => "`until_secs`".to_owned(),
             false => format!("the end of the run, {} s", brief(end)),
         };

@@ -20,6 +20,8 @@ const FOLLOWED: f64 = 3.0;
 const CONE: f64 = 0.5;
 /// Two agents are exactly head-on if nothing leads them this far aside, meters and m/s.
 const HEAD_ON: f64 = 1e-4;
+/// Exits that pass this part of what they may hold people back by their limit.
+const USED: f64 = 0.8;
 /// Bodies that overlap a wall by less than this only touch it, meters.
 const TOUCH: f64 = 0.01;
 
@@ -42,7 +44,8 @@ fn likely(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> Stri
         return reason;
     }
     let ahead = heading(simulation, i, aim);
-    let limit = limit(simulation, aim);
+    let leaving = leaving(simulation, aim);
+    let limit = limit(simulation, aim, leaving);
     if ahead == Vector::zeros() {
         if let Some(limit) = limit {
             return limit;
@@ -50,7 +53,6 @@ fn likely(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> Stri
         return "it stands where it wants to be, and does not leave there".to_owned();
     }
     let touching = blockers(simulation, i, TOUCHING, (aim, ahead));
-    let leaving = leaving(simulation, aim);
     // Before a door, where agents still leave, others are the cause, not the wall beside the door.
     if let Aim::Goal(goal) = aim
         && scene.ways.is_none()
@@ -70,7 +72,7 @@ fn likely(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> Stri
     }
     let followed = || blockers(simulation, i, FOLLOWED, (aim, ahead));
     match touching.or_else(|| followed().filter(|_| pressing.is_empty())) {
-        Some(Blockers::Others) if leaving > 0 => {
+        Some(Blockers::Others) if leaving > 0 && limit.is_none() => {
             let to = named(simulation, aim).map_or(String::new(), |name| format!(" by {name}"));
             format!(
                 "others block its way, in a crowd that moves: {leaving} left{to} in the last {STUCK_AFTER} s"
@@ -91,8 +93,9 @@ fn likely(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> Stri
     }
 }
 
-/// How an exit holds people back that passes a limited number per second, if it does so now.
-fn limit(simulation: &Simulation, aim: Aim) -> Option<String> {
+/// How an exit holds people back that passes a limited number per second, if it does so now, or if nearly as many as it
+/// passes, `leaving`, have left in the last seconds.
+fn limit(simulation: &Simulation, aim: Aim, leaving: usize) -> Option<String> {
     let Aim::Place(number) = aim else {
         return None;
     };
@@ -104,7 +107,8 @@ fn limit(simulation: &Simulation, aim: Aim) -> Option<String> {
         exit.most_per_sec?,
         simulation.progress().places[usize::from(number)].ready,
     );
-    (simulation.frame().clock.time() < ready).then(|| {
+    let is_used = leaving as f64 >= USED * rate * STUCK_AFTER;
+    (is_used || simulation.frame().clock.time() < ready).then(|| {
         format!(
             "the exit `{}` lets one person pass every {:.1} s (`most_per_sec` {rate})",
             shown(&place.name),
