@@ -102,7 +102,8 @@ fn a_report_has_the_notes_of_the_run_and_the_limits_that_the_scenario_gives() {
         ],
         "entrances": [
             {"name": "door", "line": [[0, 1], [0, 1.6]], "at_secs": [2, 2, 2, 2, 2, 2], "journey": "wait"}
-        ]
+        ],
+        "events": [{"at_secs": 9, "open": "gate"}]
     });
     fs::write(folder.path().join("gates.json"), gates.to_string()).unwrap();
     let run = run_in(folder.path(), &["run", "gates.json"]);
@@ -114,7 +115,7 @@ fn a_report_has_the_notes_of_the_run_and_the_limits_that_the_scenario_gives() {
         Some(note.to_owned())
     });
     let notes: Vec<String> = notes.collect();
-    // The step, the limit of the speed, and agents that wait for room to enter.
+    // The step, an event without effect, and agents that wait for room to enter.
     assert!(notes.len() >= 3, "{said}");
     for file in ["gates.html", "gates.pdf"] {
         done(
