@@ -103,7 +103,9 @@ fn a_report_has_the_notes_of_the_run_and_the_limits_that_the_scenario_gives() {
         "entrances": [
             {"name": "door", "line": [[0, 1], [0, 1.6]], "at_secs": [2, 2, 2, 2, 2, 2], "journey": "wait"}
         ],
-        "events": [{"at_secs": 9, "open": "gate"}]
+        "events": [
+            {"name": "push", "at_secs": 1, "for_secs": 0.5, "region": [[12, 6.5], [13, 7.5]], "goal_scale": 2}
+        ]
     });
     fs::write(folder.path().join("gates.json"), gates.to_string()).unwrap();
     let run = run_in(folder.path(), &["run", "gates.json"]);
@@ -115,7 +117,7 @@ fn a_report_has_the_notes_of_the_run_and_the_limits_that_the_scenario_gives() {
         Some(note.to_owned())
     });
     let notes: Vec<String> = notes.collect();
-    // The step, an event without effect, and agents that wait for room to enter.
+    // The step, agents that wait for room to enter, and a push without agents.
     assert!(notes.len() >= 3, "{said}");
     for file in ["gates.html", "gates.pdf"] {
         done(
