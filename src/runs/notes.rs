@@ -12,7 +12,7 @@ use crate::scenario::measurements::LongestQueue;
 use crate::scenario::quote::shown;
 use crate::scenario::{automatic_step, doubtful_radius, tidy};
 
-/// Notes on displaced agents, stopped move, clamped speeds, agents that waited for room, queues that were too long for
+/// Notes on displaced agents, stopped moves, clamped speeds, agents that waited for room, queues that were too long for
 /// their line or too dense, and pushes without agents.
 pub fn of(run: &Run) -> Vec<String> {
     let queues = run.metrics.longest_queues(&run.simulation);

@@ -204,7 +204,7 @@ fn waits(scenario: &Scenario, places: &[PlaceResult]) -> Vec<Block> {
             Block::heading("Waiting areas and queues"),
             Block::Table(
                 table,
-                "People: those who have left it, each counted once. Mean wait: of a visit."
+                "People: those who have left it, each counted once. Mean wait: per visit."
                     .to_owned(),
             ),
         ],

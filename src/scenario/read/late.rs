@@ -139,7 +139,7 @@ pub fn kept(scene: &Scene, [end, last]: [f64; 2]) -> Vec<String> {
 pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
     if last == 0.0 {
         return Some(
-            "duration_secs: in 0 s nobody walks: the run has its first frame only".to_owned(),
+            "duration_secs: in 0 s no agent walks: the run has its first frame only".to_owned(),
         );
     }
     let is_all = scene.sources.is_empty() && scene.entrances.is_empty() && last > 0.0;
@@ -168,7 +168,7 @@ pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
     let needed: Option<Vec<f64>> = scene.agents.iter().map(needs).collect();
     let least = needed.filter(|_| is_all)?.into_iter().reduce(f64::min)?;
     if least.is_infinite() {
-        return Some("preferred_speed: all agents have 0 m/s: nobody leaves".to_owned());
+        return Some("preferred_speed: all agents have 0 m/s: none leaves".to_owned());
     }
     (least > last).then(|| {
         let (end, least) = (brief(end), least.ceil());
