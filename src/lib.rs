@@ -42,22 +42,22 @@
 //! | Π, {(Π, ρ)} | [`Profile`](engine::profile::Profile), [`Blend`](engine::profile::Blend) | | P_k, a(P_k) | [`HiddenRegion`](engine::geometry::HiddenRegion), `hidden_area` |
 //! | w | `collision_weight` | | v^pref, s_pref, s_max | `preferred_velocity`, `preferred_speed`, `max_speed` |
 //!
-//! The code has seven wings, one module each: engine, analysis, scenario, runs, output, lab and cli. A wing uses only
-//! the wings before it in this list, and a module uses only the modules above it in its wing; the compiler and
+//! The code has seven layers: the crates engine, analysis, scenario, runs, output and lab, and the module cli. A layer
+//! uses only those before it in this list, and a module uses only the modules above it in its crate; the compiler and
 //! `tests/architecture.rs` check this.
 //! `docs/architecture.md` describes the loop, the path from a scenario file to a recording, and recipes for extensions.
 
 #![warn(missing_docs, clippy::unwrap_used)]
 
-pub use sandbox_scenario::{analysis, engine, runs, scenario};
+pub use {analysis, engine, runs, scenario};
 
 #[cfg(feature = "program")]
-pub mod output;
+pub use output;
 
 // Public only because the tests, the experiments, the Python package and `main.rs` are crates of their own.
 #[cfg(feature = "program")]
 #[doc(hidden)]
-pub mod lab;
+pub use lab;
 
 #[cfg(feature = "program")]
 #[doc(hidden)]

@@ -1,14 +1,13 @@
-//! The architecture: wings and modules use only those declared above them, each foreign crate is used in one place,
-//! there is no `unwrap` outside of tests, no file has more than 400 lines, and no line more than 120 characters. The
-//! checks of lengths hold for all Rust files, that of `unwrap` for `experiments`, too.
+//! The architecture: crates and modules use only those declared above them, each foreign crate is used in one place,
+//! no module has its source elsewhere, there is no `unwrap` outside of tests, no file has more than 400 lines, and no
+//! line more than 120 characters. The checks of lengths hold for all Rust files, that of `unwrap` for `experiments`, too.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The folders with Rust files.
-const FOLDERS: [&str; 7] = [
+const FOLDERS: [&str; 6] = [
     "src",
-    "crates",
     "tests",
     "experiments",
     "examples",
@@ -72,41 +71,37 @@ fn declared(path: &Path) -> Vec<String> {
     lines.filter_map(name).collect()
 }
 
-/// The roots of the crates, from top to bottom. The compiler keeps a crate from using those below it.
-const CRATES: [&str; 3] = [
-    "../crates/engine/lib.rs",
-    "../crates/scenario/lib.rs",
-    "lib.rs",
+/// The crates in `src/` from top to bottom, with the program's own part at the end, and the file that declares the
+/// modules of each. The compiler keeps a crate from using those below it.
+const CRATES: [(&str, &str); 7] = [
+    ("engine", "lib.rs"),
+    ("analysis", "lib.rs"),
+    ("scenario", "lib.rs"),
+    ("runs", "lib.rs"),
+    ("output", "lib.rs"),
+    ("lab", "lib.rs"),
+    ("cli", "mod.rs"),
 ];
 
-/// The wings from top to bottom, each with its modules in order.
-fn wings() -> Vec<(String, Vec<String>)> {
-    let wings = CRATES
-        .iter()
-        .flat_map(|root| declared(&source().join(root)));
-    let modules = |wing: &str| declared(&source().join(wing).join("mod.rs"));
-    wings.map(|wing| (wing.clone(), modules(&wing))).collect()
-}
-
-/// The files of the wings: without the library's root and the program.
-fn files_of_wings() -> Vec<PathBuf> {
+/// The files of the crates: without the roots, and without the program's library and `main`.
+fn files_of_crates() -> Vec<PathBuf> {
     let mut found = files(&source());
     found.retain(|path| {
-        !["lib.rs", "main.rs"]
+        !["lib.rs", "main.rs", "build.rs"]
             .iter()
             .any(|name| path.ends_with(name))
     });
     found
 }
 
-/// The wing and the module of a file, such as `engine` and `frame`.
+/// The crate and the module of a file, such as `engine` and `frame`.
 fn place_of(path: &Path) -> (String, String) {
     let inside = path.strip_prefix(source()).unwrap();
     let mut names = inside
         .components()
         .map(|part| part.as_os_str().to_str().unwrap().trim_end_matches(".rs"));
-    let wing = names.next().unwrap().to_owned();
-    (wing, names.next().unwrap_or_default().to_owned())
+    let krate = names.next().unwrap().to_owned();
+    (krate, names.next().unwrap_or_default().to_owned())
 }
 
 /// Every identifier directly after `prefix` in a text, including the entries of a `{…}` list.
@@ -151,51 +146,53 @@ fn joined(path: &Path) -> String {
 }
 
 #[test]
-fn wings_and_modules_use_only_those_above_them() {
-    let wings = wings();
-    assert_eq!(wings.len(), 7, "{wings:?}");
-    for path in files_of_wings() {
-        let (wing, module) = place_of(&path);
-        let own_wing = wings.iter().position(|(name, _)| *name == wing);
-        let own_wing = own_wing.unwrap_or_else(|| panic!("{wing} is in no crate"));
-        let text = joined(&path);
-        for name in names_after(&text, "crate::") {
-            let used = wings.iter().position(|(other, _)| *other == name);
-            let used = used.unwrap_or_else(|| panic!("{}: crate::{name}?", path.display()));
-            assert!(
-                used <= own_wing,
-                "{}: `{wing}` uses `{name}`, which stands below it",
-                path.display()
-            );
-        }
-        let order = &wings[own_wing].1;
+fn modules_use_only_those_declared_above_them() {
+    for path in files_of_crates() {
+        let (krate, module) = place_of(&path);
+        let (_, root) = CRATES
+            .into_iter()
+            .find(|(name, _)| *name == krate)
+            .unwrap_or_else(|| panic!("{krate} is no crate"));
+        let order = declared(&source().join(&krate).join(root));
         let Some(own) = order.iter().position(|name| *name == module) else {
-            assert!(
-                path.ends_with("mod.rs"),
-                "{} is in no module",
-                path.display()
-            );
+            assert!(path.ends_with(root), "{} is in no module", path.display());
             continue;
         };
-        let mut used = names_after(&text, &format!("crate::{wing}::"));
-        // From a module's own file, `super` is its wing.
+        let text = joined(&path);
+        let from = match krate.as_str() {
+            "cli" => "crate::cli::",
+            _ => "crate::",
+        };
+        let mut used = names_after(&text, from);
+        // From a module's own file, `super` is its crate.
         let own_file = if path.ends_with("mod.rs") {
             path.parent()
         } else {
             Some(path.as_path())
         };
-        if own_file.and_then(Path::parent) == Some(source().join(&wing).as_path()) {
+        if own_file.and_then(Path::parent) == Some(source().join(&krate).as_path()) {
             used.extend(names_after(&text, "super::"));
         }
         for name in used {
-            let place = order.iter().position(|other| *other == name);
-            let place =
-                place.unwrap_or_else(|| panic!("{}: crate::{wing}::{name}?", path.display()));
+            // Items of the root itself, such as re-exports, are of no module.
+            let Some(place) = order.iter().position(|other| *other == name) else {
+                continue;
+            };
             assert!(
                 place <= own,
                 "{}: `{module}` uses `{name}`, which stands below it",
                 path.display()
             );
+        }
+    }
+}
+
+#[test]
+fn every_module_has_its_source_beside_it() {
+    for path in files(&source()) {
+        for (k, line) in code(&path) {
+            let elsewhere = line.trim_start().starts_with("#[path");
+            assert!(!elsewhere, "{}:{k}: {line}", path.display());
         }
     }
 }
@@ -211,9 +208,10 @@ fn strays(krate: &str, homes: &[&str]) -> Vec<String> {
         starts || used.is_some_and(|rest| rest.starts_with([';', ' ']))
     };
     let mut found = Vec::new();
-    for path in files_of_wings() {
-        let (wing, module) = place_of(&path);
-        if homes.contains(&wing.as_str()) || homes.contains(&format!("{wing}/{module}").as_str()) {
+    for path in files_of_crates() {
+        let (krate, module) = place_of(&path);
+        if homes.contains(&krate.as_str()) || homes.contains(&format!("{krate}/{module}").as_str())
+        {
             continue;
         }
         let lines = code(&path).into_iter().filter(|(_, line)| names(line));

@@ -26,6 +26,7 @@ mod entrances;
 mod errands;
 mod exits;
 mod exposure;
+mod file_circles;
 mod floor_plan;
 mod floor_plan_areas;
 mod floor_plan_kinds;

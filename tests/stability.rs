@@ -2,10 +2,10 @@
 
 use crate::common::program;
 use nalgebra::{Matrix3, Vector3};
-use sandbox::analysis::stability::{Constants, FITTED, Scheme, time_step};
 use sandbox::engine::clock::PAPER_COARSE_STEP;
 use sandbox::engine::forces::rates::Rates;
 use sandbox::engine::scene::{Integrator, Scene};
+use sandbox::engine::stability::{Constants, FITTED, Scheme, time_step};
 use sandbox::lab::stress::{Cell, Condition, Detail, Law, Limit, Rest, fit};
 use sandbox::scenario::Scenario;
 use sandbox::scenario::catalog::WalkingLawKind;

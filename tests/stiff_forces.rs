@@ -5,7 +5,6 @@ use std::sync::Arc;
 use crate::common::{
     blend, blend_with, block, breakdown, evaluated, person, rectangle, run, scene, vector,
 };
-use sandbox::analysis::stability::time_step;
 use sandbox::engine::clock::Clock;
 use sandbox::engine::forces::own::Force;
 use sandbox::engine::frame::Frame;
@@ -13,6 +12,7 @@ use sandbox::engine::math::Vector;
 use sandbox::engine::profile::Term;
 use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::engine::simulation::Simulation;
+use sandbox::engine::stability::time_step;
 use sandbox::scenario::catalog::{NAMES, Parameters, WalkingLawKind};
 use sandbox::scenario::schema;
 use serde::Deserialize;

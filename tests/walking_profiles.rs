@@ -5,13 +5,13 @@ use crate::common::{
     acceleration, bits, blend_with, block, breakdown, evaluated, on_threads, room, run, scene,
     vector, walker,
 };
-use sandbox::analysis::stability::time_step;
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
 use sandbox::engine::profile::{Blend, BlendStep};
 use sandbox::engine::scene::Group;
 use sandbox::engine::simulation::Simulation;
+use sandbox::engine::stability::time_step;
 use sandbox::scenario::catalog::{Parameters, WalkingLawKind};
 
 /// A single profile under another law, as a step of a blend.

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::exposure::{Spell, Weight};
 use super::local::local;
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
+use engine::math::Vector;
+use engine::simulation::Simulation;
 
 /// The mass of an average person, m = 1, if none is given, kg.
 pub const BODY_MASS: f64 = 75.0;

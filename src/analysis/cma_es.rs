@@ -5,7 +5,7 @@
 //! the order of the values, so a monotone transformation of the function changes nothing.
 //!
 //! ```
-//! # use sandbox_engine::analysis::cma_es::CmaEs;
+//! # use sandbox_analysis::cma_es::CmaEs;
 //! let mut search = CmaEs::new(&[0.9, 0.1], 0.3, 8, 1);
 //! for _ in 0..100 {
 //!     let points = search.ask();

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::engine::geometry::Walls;
-use crate::engine::math::Vector;
+use engine::geometry::Walls;
+use engine::math::Vector;
 
 /// A measurement line. Forward is from its left to its right, seen from its first end to its second.
 #[derive(Debug, Clone, Copy, PartialEq)]

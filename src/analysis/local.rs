@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 
 use super::site::{Hidden, Kernel, Site};
 use super::surroundings::{MOST_HIDDEN, Surroundings};
-use crate::engine::agents::Agents;
-use crate::engine::boundary::WallMethod;
-use crate::engine::geometry::Walls;
-use crate::engine::math::Vector;
-use crate::engine::period::Period;
-use crate::engine::simulation::Simulation;
+use engine::agents::Agents;
+use engine::boundary::WallMethod;
+use engine::geometry::Walls;
+use engine::math::Vector;
+use engine::period::Period;
+use engine::simulation::Simulation;
 
 /// The kernel: h = √5 m, and the union of the regions hidden by walls.
 pub const KERNEL: Kernel = Kernel {

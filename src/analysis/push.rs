@@ -4,7 +4,7 @@
 //! along the row are means over five samples, speeds are their central differences, and a speed counts as reached if
 //! four samples in a row have it.
 
-use crate::analysis::statistics::Range;
+use crate::statistics::Range;
 
 /// The speeds at which fronts are looked for, m/s.
 pub const THRESHOLDS: [f64; 6] = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3];

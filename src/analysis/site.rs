@@ -1,8 +1,8 @@
 //! The measurement site: the parts of a kernel that walls hide from people and from grid cells.
 
-use crate::engine::boundary::WallMethod;
-use crate::engine::geometry::{Polygon, Walls};
-use crate::engine::math::{Vector, bounds};
+use engine::boundary::WallMethod;
+use engine::geometry::{Polygon, Walls};
+use engine::math::{Vector, bounds};
 
 /// Obstacles, with a fast test for points inside them.
 #[derive(Debug, Clone)]

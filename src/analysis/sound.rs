@@ -15,9 +15,9 @@
 //! correction for their overlap. M = (9/8) d² on a hexagonal lattice whose discs just touch at distance d, and
 //! M = (3/16) z d² for z isotropic contacts per agent.
 
-use crate::engine::math::Vector;
-use crate::engine::scene::Region;
-use crate::engine::simulation::Simulation;
+use engine::math::Vector;
+use engine::scene::Region;
+use engine::simulation::Simulation;
 
 /// c in m/s for waves much longer than h, without contacts.
 pub fn speed_of_fluid(gas_constant: f64) -> f64 {

@@ -7,13 +7,13 @@ pub use moments::Moments;
 use rayon::prelude::*;
 
 use super::site::{Hidden, Site};
-use crate::engine::agents::{Agents, NewAgent, REFERENCE_RADIUS};
-use crate::engine::density::from_agents;
-use crate::engine::geometry::Walls;
-use crate::engine::kernel;
-use crate::engine::math::Vector;
-use crate::engine::neighbors::{BLOCK, Neighbors, Ranges};
-use crate::engine::pairs::{Bodies, Reach};
+use engine::agents::{Agents, NewAgent, REFERENCE_RADIUS};
+use engine::density::from_agents;
+use engine::geometry::Walls;
+use engine::kernel;
+use engine::math::Vector;
+use engine::neighbors::{BLOCK, Neighbors, Ranges};
+use engine::pairs::{Bodies, Reach};
 
 /// At most this share of a kernel counts as hidden: in a narrow gap, the visible rest is too small to be meaningful.
 pub const MOST_HIDDEN: f64 = 0.9;

@@ -2,11 +2,11 @@
 //!
 //! A cell is the intersection of the half-planes nearer to a person than to each of its Delaunay neighbors, within a
 //! convex polygon around the person (Steffen and Seyfried, Physica A 389, 2010). All outlines are counterclockwise, in
-//! meters. The only file of this wing that names spade.
+//! meters. The only file of this crate that names spade.
 
 use spade::{DelaunayTriangulation, Point2, Triangulation, mitigate_underflow};
 
-use crate::engine::math::Vector;
+use engine::math::Vector;
 
 /// The cell of a person.
 #[derive(Debug, Clone, PartialEq)]

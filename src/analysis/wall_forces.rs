@@ -10,9 +10,9 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::exposure::{Spell, Weight};
-use crate::engine::geometry::Walls;
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
+use engine::geometry::Walls;
+use engine::math::Vector;
+use engine::simulation::Simulation;
 
 /// The longest cell, meters.
 const CELL: f64 = 0.2;

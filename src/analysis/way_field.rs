@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::round;
 
-use crate::engine::math::Vector;
-use crate::engine::ways::{Destination, Next, Way, Ways};
+use engine::math::Vector;
+use engine::ways::{Destination, Next, Way, Ways};
 
 /// Square cells in rows from the lower left.
 #[derive(Debug, Clone, Copy, PartialEq)]

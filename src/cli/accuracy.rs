@@ -7,8 +7,8 @@ use super::failure::Failure;
 use super::terminal::tell;
 use super::update::CaseOptions;
 use super::watch::Watch;
-use crate::lab::accuracy::{CHOICES, Plan, SCENES, Scene, accuracy, knobs};
-use crate::lab::estimate::{Pool, coverage, knowledge};
+use lab::accuracy::{CHOICES, Plan, SCENES, Scene, accuracy, knobs};
+use lab::estimate::{Pool, coverage, knowledge};
 
 #[derive(Args)]
 pub struct AccuracyOptions {

@@ -10,12 +10,12 @@ use super::values::{
     self, dpi, every_frames, frame_rate, millimeters, positive_seconds, recording, seconds, seed,
     threads,
 };
-use crate::lab::estimate::{Bound, Limits, Request, Sampling, Wanted};
-use crate::output::plot::Print;
-use crate::runs::outputs::Outputs;
-use crate::runs::store::Store;
-use crate::scenario::quote::shown;
-use crate::scenario::{Preset, Setting};
+use lab::estimate::{Bound, Limits, Request, Sampling, Wanted};
+use output::plot::Print;
+use runs::outputs::Outputs;
+use runs::store::Store;
+use scenario::quote::shown;
+use scenario::{Preset, Setting};
 
 /// Options that change a scenario and how it is computed.
 #[derive(Args)]

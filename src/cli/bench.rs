@@ -10,9 +10,9 @@ use super::arguments::{PrintOptions, use_threads};
 use super::failure::Failure;
 use super::terminal::{talk, tell};
 use super::values::{repeats, threads};
-use crate::lab::bench::{BENCHMARKS, Plan, Report, files};
-use crate::lab::error::LabError;
-use crate::runs::outputs::{Manner, Outputs};
+use lab::bench::{BENCHMARKS, Plan, Report, files};
+use lab::error::LabError;
+use runs::outputs::{Manner, Outputs};
 
 /// Examples of commands.
 pub const EXAMPLES: &str = "\

@@ -9,12 +9,12 @@ use super::arguments::{PrintOptions, ReplaceOptions, use_threads};
 use super::failure::Failure;
 use super::terminal::tell;
 use super::watch::Watch;
-use crate::lab::calibrate::{Calibration, FILES, MOST_GENERATIONS, Target, run as search};
-use crate::lab::machine::main_memory;
-use crate::lab::sweep::Shard;
-use crate::output::table::Table;
-use crate::runs::outputs::Manner;
-use crate::runs::store::Store;
+use lab::calibrate::{Calibration, FILES, MOST_GENERATIONS, Target, run as search};
+use lab::machine::main_memory;
+use lab::sweep::Shard;
+use output::table::Table;
+use runs::outputs::Manner;
+use runs::store::Store;
 
 /// An example of a study, and of commands.
 pub const EXAMPLE: &str = r#"A study, JSON:

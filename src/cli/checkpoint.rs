@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use super::arguments::CheckpointOptions;
 use super::failure::Failure;
 use super::terminal::talk;
-use crate::runs::checkpoint::{Checkpoint, CheckpointError};
-use crate::runs::drive::{End, Observer, Run};
-use crate::scenario::Scenario;
+use runs::checkpoint::{Checkpoint, CheckpointError};
+use runs::drive::{End, Observer, Run};
+use scenario::Scenario;
 
 /// The checkpoints of a run.
 pub struct Checkpoints {

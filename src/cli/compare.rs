@@ -10,13 +10,13 @@ use super::failure::Failure;
 use super::inputs::tracks;
 use super::terminal::{talk, tell};
 use super::values::frame_rate;
-use crate::lab::differences::{Differences, NotAReport, of_reports, of_tracks};
-use crate::lab::estimate::{compared, is_answer};
-use crate::output::recording::Recorded;
-use crate::scenario::input;
-use crate::scenario::kinds::is_scenario;
-use crate::scenario::quote::shown;
-use crate::scenario::trajectories::{ReadOptions, Tracks, Unit};
+use lab::differences::{Differences, NotAReport, of_reports, of_tracks};
+use lab::estimate::{compared, is_answer};
+use output::recording::Recorded;
+use scenario::input;
+use scenario::kinds::is_scenario;
+use scenario::quote::shown;
+use scenario::trajectories::{ReadOptions, Tracks, Unit};
 
 #[derive(Args)]
 pub struct CompareOptions {

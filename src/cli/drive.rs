@@ -13,13 +13,13 @@ use super::output::{check, recordings, trajectories};
 use super::terminal::{talk, tell};
 use super::watch::Progress;
 use super::{memory, notes, results};
-use crate::lab::machine::main_memory;
-use crate::runs::case::Source;
-use crate::runs::checkpoint::Checkpoint;
-use crate::runs::drive::{End, Observer, Run};
-use crate::runs::notes::of_step;
-use crate::runs::outputs::Outputs;
-use crate::scenario::{Scenario, Setting, in_units};
+use lab::machine::main_memory;
+use runs::case::Source;
+use runs::checkpoint::Checkpoint;
+use runs::drive::{End, Observer, Run};
+use runs::notes::of_step;
+use runs::outputs::Outputs;
+use scenario::{Scenario, Setting, in_units};
 
 /// `sandbox evacuation|crossing|concert|plaza|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {

@@ -10,16 +10,16 @@ use super::failure::Failure;
 use super::inputs::settings;
 use super::terminal::{talk, tell};
 use super::watch::Watch;
-use crate::lab::curves::csv as curves_csv;
-use crate::lab::estimate::{
+use lab::curves::csv as curves_csv;
+use lab::estimate::{
     Answer, Answers, Forecast, Question, Request, Validated, bound_sheet, curve_sheet, run as make,
     sheet,
 };
-use crate::lab::machine::main_memory;
-use crate::output::plot::Print;
-use crate::runs::case::Source;
-use crate::runs::outputs::{Manner, Outputs};
-use crate::runs::store::Store;
+use lab::machine::main_memory;
+use output::plot::Print;
+use runs::case::Source;
+use runs::outputs::{Manner, Outputs};
+use runs::store::Store;
 
 pub const EXAMPLES: &str = "\
 Examples:

@@ -1,20 +1,20 @@
 //! Why a command failed, and its exit code.
 
-use crate::engine::breakdown::Breakdown;
-use crate::engine::simulation::{Fault, Simulation};
-use crate::lab::error::LabError;
-use crate::lab::estimate::QuestionError;
-use crate::lab::measure::MeasureError;
-use crate::lab::sweep::{DrawingError, StudyError};
-use crate::output::page::PageError;
-use crate::output::plot::PlotError;
-use crate::output::recording::RecordingError;
-use crate::output::trajectory::TrajectoryError;
-use crate::runs::checkpoint::CheckpointError;
-use crate::runs::error::StoreError;
-use crate::runs::outputs::OutputsError;
-use crate::scenario::ScenarioError;
-use crate::scenario::trajectories::ReadError;
+use engine::breakdown::Breakdown;
+use engine::simulation::{Fault, Simulation};
+use lab::error::LabError;
+use lab::estimate::QuestionError;
+use lab::measure::MeasureError;
+use lab::sweep::{DrawingError, StudyError};
+use output::page::PageError;
+use output::plot::PlotError;
+use output::recording::RecordingError;
+use output::trajectory::TrajectoryError;
+use runs::checkpoint::CheckpointError;
+use runs::error::StoreError;
+use runs::outputs::OutputsError;
+use scenario::ScenarioError;
+use scenario::trajectories::ReadError;
 
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]

@@ -6,14 +6,14 @@ use std::path::Path;
 use super::arguments::{SceneOptions, setting};
 use super::failure::Failure;
 use super::terminal::talk;
-use crate::lab::machine::main_memory;
-use crate::lab::measure::Site;
-use crate::runs::case::Source;
-use crate::runs::outputs::Outputs;
-use crate::scenario::floor_plan::{self, FloorPlan};
-use crate::scenario::quote::shown;
-use crate::scenario::trajectories::{self, ReadOptions, Tracks};
-use crate::scenario::{Draft, Scenario, Setting};
+use lab::machine::main_memory;
+use lab::measure::Site;
+use runs::case::Source;
+use runs::outputs::Outputs;
+use scenario::floor_plan::{self, FloorPlan};
+use scenario::quote::shown;
+use scenario::trajectories::{self, ReadOptions, Tracks};
+use scenario::{Draft, Scenario, Setting};
 
 /// The default profile is the paper's, as files of earlier versions expect; it is not for questions about real people.
 const DEFAULT_PROFILE_NOTE: &str = "note: no `profile` is given: `sph`, the default, is the paper's, whose dense \

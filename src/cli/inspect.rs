@@ -11,12 +11,12 @@ use super::terminal::say;
 use super::values::{id, is_page, recording, seconds};
 use super::watch::Progress;
 use super::{memory, moment, output};
-use crate::engine::breakdown::Breakdown;
-use crate::engine::pairs::Precision;
-use crate::engine::simulation::Simulation;
-use crate::output::recording::check_enabled;
-use crate::runs::outputs::{Manner, Outputs};
-use crate::scenario::quote::printable;
+use ::output::recording::check_enabled;
+use engine::breakdown::Breakdown;
+use engine::pairs::Precision;
+use engine::simulation::Simulation;
+use runs::outputs::{Manner, Outputs};
+use scenario::quote::printable;
 
 #[derive(Args)]
 pub struct InspectOptions {

@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 use super::failure::Failure;
 use super::terminal::{say, tell};
 use super::update::UpdateOptions;
-use crate::output::table::Table;
-use crate::scenario::catalog::{ABOUT, NAMES};
-use crate::scenario::measurements::{Measurement, Quantity};
-use crate::scenario::{self, SHIPPED, SettingDoc, calibrated, nested_settings, settings};
+use output::table::Table;
+use scenario::catalog::{ABOUT, NAMES};
+use scenario::measurements::{Measurement, Quantity};
+use scenario::{self, SHIPPED, SettingDoc, calibrated, nested_settings, settings};
 
 /// Most characters in a line beside a name.
 const WIDTH: usize = 80;

@@ -11,7 +11,7 @@ use clap_mangen::{Man, generate_to};
 use super::commands::Arguments;
 use super::failure::Failure;
 use super::terminal::say;
-use crate::runs::outputs::{Manner, Outputs};
+use runs::outputs::{Manner, Outputs};
 
 /// `sandbox completions`.
 pub fn completions(shell: Shell) -> Result<(), Failure> {

@@ -56,10 +56,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::output::plot::take_lacked;
-use crate::runs::case::Source;
-use crate::scenario::quote::shown;
+use ::output::plot::take_lacked;
 use commands::{Arguments, Command};
+use runs::case::Source;
+use scenario::quote::shown;
 use terminal::talk;
 
 /// Runs the program with the arguments of this process; see [`main_with`].

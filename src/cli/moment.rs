@@ -5,11 +5,11 @@ use super::failure::Failure;
 use super::inputs::scenario as read;
 use super::interrupt::Interrupt;
 use super::watch::Progress;
-use crate::engine::simulation::Simulation;
-use crate::runs::case::Source;
-use crate::runs::drive::{Observer, Run};
-use crate::runs::outputs::Outputs;
-use crate::scenario::Scenario;
+use engine::simulation::Simulation;
+use runs::case::Source;
+use runs::drive::{Observer, Run};
+use runs::outputs::Outputs;
+use scenario::Scenario;
 
 /// Reads a built-in scenario or a scenario file; if the time `at`, seconds, lies beyond its end, sources continue until
 /// then. Writing output takes `writing` bytes of memory per agent.

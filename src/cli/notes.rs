@@ -3,9 +3,9 @@
 use super::arguments::RecordOptions;
 use super::terminal::talk;
 use super::values::ids;
-use crate::engine::simulation::Simulation;
-use crate::runs::drive::Run;
-use crate::runs::notes;
+use engine::simulation::Simulation;
+use runs::drive::Run;
+use runs::notes;
 
 /// Prints the notes on a run.
 pub fn print(run: &Run) {

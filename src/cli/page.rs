@@ -13,11 +13,11 @@ use super::inputs::NO_WALLS;
 use super::terminal::tell;
 use super::values::{frame_rate, page};
 use super::watch::bar;
-use crate::output::page::{EmbeddedViewer, Moment, Page, PageOptions as Content};
-use crate::output::picture::{Crowd, Picture};
-use crate::output::results::{pairs, reproducible, results, section};
-use crate::runs::outputs::{Manner, Outputs};
-use crate::scenario::trajectories::{ReadOptions, Unit};
+use output::page::{EmbeddedViewer, Moment, Page, PageOptions as Content};
+use output::picture::{Crowd, Picture};
+use output::results::{pairs, reproducible, results, section};
+use runs::outputs::{Manner, Outputs};
+use scenario::trajectories::{ReadOptions, Unit};
 
 /// Where densities come from, in words.
 const DENSITIES: &str =

@@ -12,17 +12,17 @@ use super::inputs::scenario;
 use super::moment::{none_left, to_the_end};
 use super::terminal::tell;
 use super::values::{document, seconds};
-use crate::lab::report::{InputFile, Sources, Watched, of_run, of_study};
-use crate::lab::sweep::{Gathered, Study};
-use crate::output::document::Document;
-use crate::runs::case::Source;
-use crate::runs::drive::{End, Observer, Run};
-use crate::runs::outputs::{Manner, Outputs};
-use crate::runs::store::Store;
-use crate::scenario::input::is_standard_input;
-use crate::scenario::measurements::Measurement;
-use crate::scenario::quote::shown;
-use crate::scenario::{Scenario, read_text};
+use lab::report::{InputFile, Sources, Watched, of_run, of_study};
+use lab::sweep::{Gathered, Study};
+use output::document::Document;
+use runs::case::Source;
+use runs::drive::{End, Observer, Run};
+use runs::outputs::{Manner, Outputs};
+use runs::store::Store;
+use scenario::input::is_standard_input;
+use scenario::measurements::Measurement;
+use scenario::quote::shown;
+use scenario::{Scenario, read_text};
 
 pub const EXAMPLES: &str = "\
 Examples:

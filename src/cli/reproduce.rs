@@ -9,11 +9,11 @@ use super::failure::Failure;
 use super::terminal::say_text;
 use super::update::CaseOptions;
 use super::watch::Watch;
-use crate::lab::estimate::Questions;
-use crate::lab::machine::main_memory;
-use crate::lab::reproduce::{PRODUCTS, Product, estimated, reproduce};
-use crate::lab::sweep::Study;
-use crate::runs::store::Store;
+use lab::estimate::Questions;
+use lab::machine::main_memory;
+use lab::reproduce::{PRODUCTS, Product, estimated, reproduce};
+use lab::sweep::Study;
+use runs::store::Store;
 
 #[derive(Args)]
 pub struct ReproduceOptions {

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 
-use crate::engine::scene::{Group, Scene};
-use crate::lab::reproduce::published_for;
-use crate::output::results as tables;
-use crate::runs::drive::{End, Run};
-use crate::runs::identity::Identity;
-use crate::runs::summary::{JourneyResult, PlaceResult, Summary, value};
-use crate::scenario::measurements::{HEADWAY, Integrity, Metric, STUCK_AFTER, StuckGroup};
-use crate::scenario::quote::shown;
+use engine::scene::{Group, Scene};
+use lab::reproduce::published_for;
+use output::results as tables;
+use runs::drive::{End, Run};
+use runs::identity::Identity;
+use runs::summary::{JourneyResult, PlaceResult, Summary, value};
+use scenario::measurements::{HEADWAY, Integrity, Metric, STUCK_AFTER, StuckGroup};
+use scenario::quote::shown;
 
 /// The summary, with version, identity, all settings, threads and run times.
 pub fn json(run: &Run) -> Value {

@@ -6,7 +6,7 @@ use super::failure::Failure;
 use super::terminal::say_text;
 use super::update::CaseOptions;
 use super::watch::Watch;
-use crate::lab::stress::{Detail, PARTS, stress};
+use lab::stress::{Detail, PARTS, stress};
 
 #[derive(Args)]
 pub struct StressOptions {

@@ -12,11 +12,11 @@ use super::failure::Failure;
 use super::terminal::{say_text, talk};
 use super::update::CaseOptions;
 use super::watch::Watch;
-use crate::lab::suite::{Chosen, Judged, Planned, Status, Suite};
-use crate::runs::outputs::{Manner, write_whole};
-use crate::runs::store::Store;
-use crate::scenario::quote::shown;
-use crate::scenario::{Setting, catalog};
+use lab::suite::{Chosen, Judged, Planned, Status, Suite};
+use runs::outputs::{Manner, write_whole};
+use runs::store::Store;
+use scenario::quote::shown;
+use scenario::{Setting, catalog};
 
 /// The suites that are built into the program.
 pub const VERIFICATION: &str = "verification";

@@ -10,12 +10,12 @@ use super::estimate::all_reached;
 use super::failure::Failure;
 use super::terminal::{talk, tell};
 use super::watch::Watch;
-use crate::lab::estimate::Questions;
-use crate::lab::machine::main_memory;
-use crate::lab::sweep::{Drawing, Gathered, Shard, State, Study, run as run_shard};
-use crate::runs::job::Tally;
-use crate::runs::outputs::{Manner, Outputs};
-use crate::runs::store::Store;
+use lab::estimate::Questions;
+use lab::machine::main_memory;
+use lab::sweep::{Drawing, Gathered, Shard, State, Study, run as run_shard};
+use runs::job::Tally;
+use runs::outputs::{Manner, Outputs};
+use runs::store::Store;
 
 /// An example of a study, and of commands.
 pub const EXAMPLE: &str = r#"A study, JSON:

@@ -5,8 +5,8 @@ use std::io::{ErrorKind, Write};
 use serde_json::Value;
 
 use super::failure::Failure;
-use crate::scenario::quote::printable;
-use crate::scenario::tidy;
+use scenario::quote::printable;
+use scenario::tidy;
 
 /// Writes results to stdout. A closed pipe (`| head`) is not an error.
 pub fn say(text: impl AsRef<[u8]>) -> Result<(), Failure> {

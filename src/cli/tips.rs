@@ -8,8 +8,8 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command};
 
-use crate::runs::case::Source;
-use crate::scenario::quote::printable;
+use runs::case::Source;
+use scenario::quote::printable;
 
 /// Words for commands, and what is typed here.
 const COMMANDS: [(&str, &str); 10] = [

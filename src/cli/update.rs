@@ -9,10 +9,10 @@ use clap::Args;
 use super::arguments::{PrintOptions, use_threads};
 use super::failure::Failure;
 use super::values::threads;
-use crate::lab::reproduce::put_between;
-use crate::runs::outputs::{Manner, Outputs, write_whole};
-use crate::runs::store::Store;
-use crate::scenario::input;
+use lab::reproduce::put_between;
+use runs::outputs::{Manner, Outputs, write_whole};
+use runs::store::Store;
+use scenario::input;
 
 /// The document with the tables.
 #[derive(Args)]

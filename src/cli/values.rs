@@ -7,9 +7,9 @@ use std::str::FromStr;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use super::failure::Failure;
-use crate::analysis::crossing::{Line, Passages};
-use crate::engine::scene::Region;
-use crate::scenario::trajectories::FRAME_RATES;
+use analysis::crossing::{Line, Passages};
+use engine::scene::Region;
+use scenario::trajectories::FRAME_RATES;
 
 /// A number in a range; the error is `otherwise`.
 fn within<T: FromStr + PartialOrd>(

@@ -8,10 +8,10 @@ use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
 use super::failure::Failure;
 use super::terminal::talk;
-use crate::engine::simulation::Simulation;
-use crate::runs::drive::{End, Observer, Run};
-use crate::runs::job::Listener;
-use crate::scenario::quote::printable;
+use engine::simulation::Simulation;
+use runs::drive::{End, Observer, Run};
+use runs::job::Listener;
+use scenario::quote::printable;
 
 /// A progress bar on stderr, shown only if stderr is a terminal, until it is dropped.
 pub fn bar(length: u64, template: &str) -> ProgressBar {

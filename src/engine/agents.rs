@@ -11,11 +11,11 @@ use serde::{Deserialize, Serialize};
 
 use columns::Column;
 
-use crate::engine::journeys::Trip;
-use crate::engine::math::Vector;
-use crate::engine::period::Period;
-use crate::engine::random::{self, Purpose};
-use crate::engine::ways::{Destination, Plan, Route, Walker, Ways};
+use crate::journeys::Trip;
+use crate::math::Vector;
+use crate::period::Period;
+use crate::random::{self, Purpose};
+use crate::ways::{Destination, Plan, Route, Walker, Ways};
 
 /// D_i ∈ U[0.215, 0.265] m (§5.6).
 pub const RADIUS_RANGE: [f64; 2] = [0.215, 0.265];
@@ -41,7 +41,7 @@ pub struct NewAgent {
     pub preferred_speed: Option<f64>,
     /// Time until it walks, seconds; 0 if `None`.
     pub premovement: Option<f64>,
-    /// Its [`Group`](crate::engine::scene::Group).
+    /// Its [`Group`](crate::scene::Group).
     pub group: u16,
 }
 

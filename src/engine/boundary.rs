@@ -4,9 +4,9 @@
 
 use std::f64::consts::PI;
 
-use crate::engine::geometry::{HiddenRegion, Walls, visible_parts};
-use crate::engine::kernel;
-use crate::engine::math::{Vector, direction};
+use crate::geometry::{HiddenRegion, Walls, visible_parts};
+use crate::kernel;
+use crate::math::{Vector, direction};
 
 /// How kernels are integrated over the hidden regions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]

@@ -13,12 +13,12 @@ pub use visit::{Alternative, Doing, Visit, Why};
 
 use serde::Serialize;
 
-use crate::engine::boundary::WallShare;
-use crate::engine::density::mean_density_before;
-use crate::engine::forces::pressure;
-use crate::engine::math::{Vector, direction};
-use crate::engine::profile::Terms;
-use crate::engine::simulation::{Fault, Simulation};
+use crate::boundary::WallShare;
+use crate::density::mean_density_before;
+use crate::forces::pressure;
+use crate::math::{Vector, direction};
+use crate::profile::Terms;
+use crate::simulation::{Fault, Simulation};
 
 /// Everything that acts on one agent in one frame. Accelerations are in m/s², divided by mass or density; the
 /// terms of a profile are not weighted.

@@ -9,14 +9,14 @@ use std::ops::Range;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 
-use crate::engine::agents::Agents;
-use crate::engine::boundary::WallMethod;
-use crate::engine::frame::Fields;
-use crate::engine::geometry::Walls;
-use crate::engine::math::Vector;
-use crate::engine::neighbors::{BLOCK, ClusterBlock, Neighbors, TASK};
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{
+use crate::agents::Agents;
+use crate::boundary::WallMethod;
+use crate::frame::Fields;
+use crate::geometry::Walls;
+use crate::math::Vector;
+use crate::neighbors::{BLOCK, ClusterBlock, Neighbors, TASK};
+use crate::pairs::prelude::*;
+use crate::pairs::{
     Bodies, Columns, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, load, splat, spread,
     store,
 };

@@ -7,7 +7,7 @@ use rand::Rng;
 use rand::distr::Open01;
 use statrs::distribution::{ContinuousCDF, Gamma, Normal};
 
-use crate::engine::random::{self, Purpose};
+use crate::random::{self, Purpose};
 
 /// The least share of a distribution that its bounds may keep: below this, a draw would be rounding error.
 pub const LEAST_SHARE: f64 = 1e-6;

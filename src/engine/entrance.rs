@@ -4,10 +4,10 @@
 use rand::Rng;
 use rand::distr::Open01;
 
-use crate::engine::agents::NewAgent;
-use crate::engine::geometry::{Wall, Walls};
-use crate::engine::math::{Vector, direction};
-use crate::engine::random::{self, Purpose};
+use crate::agents::NewAgent;
+use crate::geometry::{Wall, Walls};
+use crate::math::{Vector, direction};
+use crate::random::{self, Purpose};
 
 /// Bodies keep this distance in addition, meters: far above the rounding of coordinates up to 10⁶ m.
 const ROUNDING: f64 = 1e-9;

@@ -2,12 +2,12 @@
 
 use std::ops::Index;
 
-use crate::engine::agents::Agents;
-use crate::engine::clock::Clock;
-use crate::engine::geometry::Walls;
-use crate::engine::math::Vector;
-use crate::engine::neighbors::{BLOCK, Neighbors};
-use crate::engine::pairs::Packed;
+use crate::agents::Agents;
+use crate::clock::Clock;
+use crate::geometry::Walls;
+use crate::math::Vector;
+use crate::neighbors::{BLOCK, Neighbors};
+use crate::pairs::Packed;
 
 /// Quantities derived from the state, one array each, with the step that writes it in parentheses.
 #[derive(Debug, Clone, Default)]
@@ -84,8 +84,8 @@ impl Fields {
     }
 }
 
-/// One frame, frozen between [`evaluate`](crate::engine::simulation::Simulation::evaluate) and
-/// [`integrate`](crate::engine::simulation::Simulation::integrate): all fields match the positions.
+/// One frame, frozen between [`evaluate`](crate::simulation::Simulation::evaluate) and
+/// [`integrate`](crate::simulation::Simulation::integrate): all fields match the positions.
 #[derive(Clone, Copy)]
 pub struct Frame<'a> {
     /// The number and time of the frame.

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// W, Eq. 13, in 1/m², for a squared distance in m². Integrates to 1 over the plane.
 pub fn density(distance_squared: f64, h: f64) -> f64 {

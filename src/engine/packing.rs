@@ -11,9 +11,9 @@ mod taken;
 
 use rand::Rng;
 
-use crate::engine::geometry::{Area, AreaIndex, Polygon, Wall, Walls};
-use crate::engine::math::{Vector, bounds};
-use crate::engine::period::Period;
+use crate::geometry::{Area, AreaIndex, Polygon, Wall, Walls};
+use crate::math::{Vector, bounds};
+use crate::period::Period;
 use cells::Cells;
 use taken::Taken;
 

@@ -2,8 +2,8 @@
 
 use rand::Rng;
 
-use crate::engine::math::Vector;
-use crate::engine::random::{self, Purpose};
+use crate::math::Vector;
+use crate::random::{self, Purpose};
 
 /// A rectangle divided into columns × rows of equal cells, with one agent at the center of each.
 ///

@@ -11,19 +11,19 @@ pub use terms::{Term, Terms};
 
 use std::ops::Range;
 
-use crate::engine::forces::contact::{self, Contact};
-use crate::engine::forces::goal::GoalForce;
-use crate::engine::forces::legs::Legs;
-use crate::engine::forces::near::{self, PairCoefficients, Wanted};
-use crate::engine::forces::pressure;
-use crate::engine::forces::rates::{Extremes, Rates};
-use crate::engine::forces::rvo::Rvo;
-use crate::engine::forces::social::SocialForce;
-use crate::engine::forces::viscosity::Viscosity;
-use crate::engine::forces::walking::WalkingLaw;
-use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
-use crate::engine::neighbors::BLOCK;
+use crate::forces::contact::{self, Contact};
+use crate::forces::goal::GoalForce;
+use crate::forces::legs::Legs;
+use crate::forces::near::{self, PairCoefficients, Wanted};
+use crate::forces::pressure;
+use crate::forces::rates::{Extremes, Rates};
+use crate::forces::rvo::Rvo;
+use crate::forces::social::SocialForce;
+use crate::forces::viscosity::Viscosity;
+use crate::forces::walking::WalkingLaw;
+use crate::frame::Frame;
+use crate::math::Vector;
+use crate::neighbors::BLOCK;
 
 /// Steps 3, 3B and 4 for one agent: how it navigates, and which forces act on it.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,23 +5,23 @@ mod region;
 
 use std::sync::Arc;
 
-use crate::engine::agents::{Agents, NewAgent};
-use crate::engine::boundary::WallMethod;
-use crate::engine::clock::Clock;
-use crate::engine::entrance::{Entrance, Latecomer};
-use crate::engine::forces::own::Force;
-use crate::engine::forces::social::SocialForce;
-use crate::engine::forces::walking::WalkingLaw;
-use crate::engine::geometry::{Polygon, Walls};
-use crate::engine::journeys::Journeys;
-use crate::engine::math::Vector;
-use crate::engine::neighbors::{FOLLOWED, ListPolicy, MANY, Ranges, SKIN};
-use crate::engine::pairs::Precision;
-use crate::engine::period::Period;
-use crate::engine::placement::Grid;
-use crate::engine::profile::{Blend, Override, Profile};
-use crate::engine::traits::Traits;
-use crate::engine::ways::{Rooms, Ways};
+use crate::agents::{Agents, NewAgent};
+use crate::boundary::WallMethod;
+use crate::clock::Clock;
+use crate::entrance::{Entrance, Latecomer};
+use crate::forces::own::Force;
+use crate::forces::social::SocialForce;
+use crate::forces::walking::WalkingLaw;
+use crate::geometry::{Polygon, Walls};
+use crate::journeys::Journeys;
+use crate::math::Vector;
+use crate::neighbors::{FOLLOWED, ListPolicy, MANY, Ranges, SKIN};
+use crate::pairs::Precision;
+use crate::period::Period;
+use crate::placement::Grid;
+use crate::profile::{Blend, Override, Profile};
+use crate::traits::Traits;
+use crate::ways::{Rooms, Ways};
 
 pub use needs::Needs;
 pub use region::Region;
@@ -169,7 +169,7 @@ pub struct Push {
 /// pushed.
 pub const SLOWEST_MAX_SPEED: f64 = 0.5;
 
-/// Everything that a [`Simulation`](crate::engine::simulation::Simulation) is built from.
+/// Everything that a [`Simulation`](crate::simulation::Simulation) is built from.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// Seed of radii and of jitter of initial positions.

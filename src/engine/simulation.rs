@@ -45,17 +45,17 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-use crate::engine::agents::Agents;
-use crate::engine::clock::Clock;
-use crate::engine::forces::social::SocialForce;
-use crate::engine::forces::walking::WalkingLaw;
-use crate::engine::frame::{Fields, Frame};
-use crate::engine::math::Vector;
-use crate::engine::neighbors::Neighbors;
-use crate::engine::pairs::{Packed, Precision};
-use crate::engine::profile::{Blend, Override};
-use crate::engine::scene::{Needs, Scene};
-use crate::engine::ways::Narrowings;
+use crate::agents::Agents;
+use crate::clock::Clock;
+use crate::forces::social::SocialForce;
+use crate::forces::walking::WalkingLaw;
+use crate::frame::{Fields, Frame};
+use crate::math::Vector;
+use crate::neighbors::Neighbors;
+use crate::pairs::{Packed, Precision};
+use crate::profile::{Blend, Override};
+use crate::scene::{Needs, Scene};
+use crate::ways::Narrowings;
 
 /// A crowd in a scene, simulated frame by frame.
 ///

@@ -1,8 +1,8 @@
 //! Traits: the properties that are drawn for each agent when it enters.
 
-use crate::engine::agents::{NewAgent, radius_of};
-use crate::engine::distribution::Distribution;
-use crate::engine::random::Purpose;
+use crate::agents::{NewAgent, radius_of};
+use crate::distribution::Distribution;
+use crate::random::Purpose;
 
 /// Distributions of the traits of a group; `None`: the scene's value.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -3,13 +3,13 @@
 
 use std::collections::BTreeSet;
 
-use crate::analysis::bootstrap::{MeanPoint, mean_curve};
-use crate::lab::error::LabError;
-use crate::lab::gallery::{band, spanned};
-use crate::output::colors::{Rgb, light};
-use crate::output::plot::{Axis, Mark, Panel, Style};
-use crate::output::table::Table;
-use crate::runs::case::RunResult;
+use crate::error::LabError;
+use crate::gallery::{band, spanned};
+use analysis::bootstrap::{MeanPoint, mean_curve};
+use output::colors::{Rgb, light};
+use output::plot::{Axis, Mark, Panel, Style};
+use output::table::Table;
+use runs::case::RunResult;
 
 /// What the bands are, for titles and tables.
 pub const BAND: &str = "band: 95 % of the mean at each point, bootstrap over runs";

@@ -1,11 +1,11 @@
 //! How people leave: the number of people out over time, by exit, as a table and a curve.
 
-use crate::engine::simulation::Simulation;
-use crate::lab::gallery::{color, spanned};
-use crate::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
-use crate::output::table::Table;
-use crate::scenario::measurements::times_to_leave;
-use crate::scenario::trajectories::Tracks;
+use crate::gallery::{color, spanned};
+use engine::simulation::Simulation;
+use output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
+use output::table::Table;
+use scenario::measurements::times_to_leave;
+use scenario::trajectories::Tracks;
 
 /// What a row of the table and a line of the curve with all people are called.
 const ALL: &str = "all";

@@ -3,8 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::output::plot::PlotError;
-use crate::runs::error::{RunError, StoreError};
+use output::plot::PlotError;
+use runs::error::{RunError, StoreError};
 
 /// Why an experiment cannot be finished.
 #[derive(Debug, thiserror::Error)]

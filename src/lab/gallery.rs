@@ -3,9 +3,9 @@
 
 use std::path::Path;
 
-use crate::analysis::statistics::{Estimate, Range};
-use crate::output::colors::{Rgb, light};
-use crate::output::plot::{
+use analysis::statistics::{Estimate, Range};
+use output::colors::{Rgb, light};
+use output::plot::{
     Axis, BLACK, Cells, ColorBar, Corner, LINES, Mark, Panel, PlotError, Point, Sheet, Style,
     line_color,
 };

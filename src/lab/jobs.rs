@@ -5,11 +5,11 @@ use std::sync::OnceLock;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::lab::error::LabError;
-use crate::runs::error::StoreError;
-use crate::runs::job::{self, Job, Listener};
-use crate::runs::parallel::side_by_side;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use runs::error::StoreError;
+use runs::job::{self, Job, Listener};
+use runs::parallel::side_by_side;
+use runs::store::Store;
 
 /// The results of `work` for 0, 1, … below `count`, computed on several threads, each call on a single one.
 ///

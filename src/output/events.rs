@@ -1,7 +1,7 @@
 //! The log of events of a run: entries, exits, pushes, arrivals, and the end.
 
-use crate::analysis::round;
-use crate::engine::simulation::{Event, EventKind, Simulation};
+use analysis::round;
+use engine::simulation::{Event, EventKind, Simulation};
 
 /// The levels of lines.
 const INFO: &str = "INFO";

@@ -1,12 +1,12 @@
 //! Labels that do not cover each other, in pictures and in views of recordings.
 
-use crate::engine::geometry::Walls;
-use crate::engine::journeys::{Kind, Place};
-use crate::engine::math::{Vector, bounds, direction, perpendicular};
-use crate::engine::scene::Scene;
-use crate::output::colors::Rgb;
-use crate::output::scenery::{self, GoalOf, brief};
-use crate::scenario::floor_plan::Label;
+use crate::colors::Rgb;
+use crate::scenery::{self, GoalOf, brief};
+use engine::geometry::Walls;
+use engine::journeys::{Kind, Place};
+use engine::math::{Vector, bounds, direction, perpendicular};
+use engine::scene::Scene;
+use scenario::floor_plan::Label;
 
 /// Labels keep this distance from their points, points.
 pub const GAP: f64 = 4.0;

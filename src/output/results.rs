@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::output::html::{escape, facts};
-use crate::output::table::{Cell, Table};
-use crate::runs::drive::End;
-use crate::runs::summary::{JourneyResult, PlaceResult};
-use crate::scenario::measurements::Quantity;
-use crate::scenario::quote::shown;
-use crate::scenario::{Scenario, tidy};
+use crate::html::{escape, facts};
+use crate::table::{Cell, Table};
+use runs::drive::End;
+use runs::summary::{JourneyResult, PlaceResult};
+use scenario::measurements::Quantity;
+use scenario::quote::shown;
+use scenario::{Scenario, tidy};
 
 /// Longer values of settings are cut; the scenario below them is whole.
 const LONGEST: usize = 160;

@@ -2,15 +2,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::analysis::round;
-use crate::engine::agents::Agents;
-use crate::engine::geometry::Ring;
-use crate::engine::journeys::{Kind, Place, Queue, Status, Trip, Zone};
-use crate::engine::math::{Vector, bounds, direction, perpendicular};
-use crate::engine::scene::{Goal, Group, Scene};
-use crate::engine::simulation::Simulation;
-use crate::output::colors::Rgb;
-use crate::scenario::floor_plan::Label;
+use crate::colors::Rgb;
+use analysis::round;
+use engine::agents::Agents;
+use engine::geometry::Ring;
+use engine::journeys::{Kind, Place, Queue, Status, Trip, Zone};
+use engine::math::{Vector, bounds, direction, perpendicular};
+use engine::scene::{Goal, Group, Scene};
+use engine::simulation::Simulation;
+use scenario::floor_plan::Label;
 
 /// The color of zones.
 pub const ZONE: Rgb = [213, 94, 0];

@@ -1,10 +1,10 @@
 //! The time series of a run: of its crowd, and of its entrances and places.
 
-use crate::engine::journeys::{Kind, Place, Status};
-use crate::engine::scene::Scene;
-use crate::engine::simulation::Simulation;
-use crate::output::colors::Rgb;
-use crate::output::scenery;
+use crate::colors::Rgb;
+use crate::scenery;
+use engine::journeys::{Kind, Place, Status};
+use engine::scene::Scene;
+use engine::simulation::Simulation;
 
 /// The time series of the crowd: key, name and color.
 pub const CROWD: [(&str, &str, Rgb); 7] = [

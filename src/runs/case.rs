@@ -13,14 +13,12 @@ use super::identity::Identity;
 use super::job::{Job, Progress};
 use super::memory::Memory;
 use super::summary::Summary;
-use crate::engine::simulation::Fault;
-use crate::scenario::floor_plan::is_plan;
-use crate::scenario::input::is_standard_input;
-use crate::scenario::kinds;
-use crate::scenario::quote::shown;
-use crate::scenario::{
-    Draft, Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, read_text,
-};
+use engine::simulation::Fault;
+use scenario::floor_plan::is_plan;
+use scenario::input::is_standard_input;
+use scenario::kinds;
+use scenario::quote::shown;
+use scenario::{Draft, Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, read_text};
 
 /// The source of a scenario.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,13 +11,13 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::engine::simulation::{Simulation, State, StateError};
-use crate::runs::drive::Run;
-use crate::runs::identity::ENGINE;
-use crate::runs::outputs::write_whole;
-use crate::scenario::input;
-use crate::scenario::measurements::Metrics;
-use crate::scenario::{Draft, Scenario, ScenarioError, Setting};
+use crate::drive::Run;
+use crate::identity::ENGINE;
+use crate::outputs::write_whole;
+use engine::simulation::{Simulation, State, StateError};
+use scenario::input;
+use scenario::measurements::Metrics;
+use scenario::{Draft, Scenario, ScenarioError, Setting};
 
 /// The first bytes of every file.
 const MAGIC: &[u8] = b"sandbox checkpoint\n";

@@ -5,9 +5,9 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::engine::simulation::{Fault, Simulation};
-use crate::scenario::Scenario;
-use crate::scenario::measurements::Metrics;
+use engine::simulation::{Fault, Simulation};
+use scenario::Scenario;
+use scenario::measurements::Metrics;
 
 /// A run of a scenario, with its measurements.
 pub struct Run {
@@ -25,9 +25,9 @@ pub struct Run {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum End {
-    /// No agents are left and none will enter: [`stop.when_empty`](crate::scenario::Stop::when_empty).
+    /// No agents are left and none will enter: [`stop.when_empty`](scenario::Stop::when_empty).
     Empty,
-    /// No agent has arrived for some time: [`stop.idle_secs`](crate::scenario::Stop::idle_secs).
+    /// No agent has arrived for some time: [`stop.idle_secs`](scenario::Stop::idle_secs).
     Idle,
     /// The scenario's duration is reached.
     Duration,
@@ -127,7 +127,7 @@ impl Run {
         }
     }
 
-    /// Which of the scenario's [`stop`](crate::scenario::Scenario::stop) conditions holds, if any.
+    /// Which of the scenario's [`stop`](scenario::Scenario::stop) conditions holds, if any.
     fn stops(&self) -> Option<End> {
         let (frame, stop) = (self.simulation.frame(), &self.scenario.stop);
         let mut arrivals = self.simulation.outcome().arrivals.iter().rev();

@@ -1,7 +1,7 @@
 //! Why runs cannot be computed or their results stored.
 
-use crate::engine::simulation::Fault;
-use crate::scenario::ScenarioError;
+use engine::simulation::Fault;
+use scenario::ScenarioError;
 
 /// Why a run cannot be computed.
 #[derive(Debug, thiserror::Error)]

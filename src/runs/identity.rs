@@ -5,10 +5,10 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::scenario::Scenario;
+use scenario::Scenario;
 
 /// A hash of the sources of everything that a run depends on (engine, analysis, scenarios with their measurements,
-/// runs), of all dependencies' versions and of the compiler: see `crates/scenario/build.rs`.
+/// runs), of all dependencies' versions and of the compiler: see `src/runs/build.rs`.
 pub const ENGINE: &str = env!("SANDBOX_ENGINE");
 
 /// A SHA-256 of the engine and of a job's input, 32 hexadecimal digits. Results with another identity are never

@@ -1,16 +1,16 @@
 //! Notes on a run: what a reader of its results should know.
 
-use crate::analysis::stability::{FITTED, Scheme, three_digits};
-use crate::engine::clock::SHORTEST_TIME_STEP;
-use crate::engine::forces::rates::Rates;
-use crate::engine::geometry::Walls;
-use crate::engine::journeys::{Change, ChangeKind, Kind};
-use crate::engine::scene::Scene;
-use crate::engine::simulation::{EventKind, Limited, SPOT_RADIUS};
-use crate::runs::drive::{End, Run};
-use crate::scenario::measurements::LongestQueue;
-use crate::scenario::quote::shown;
-use crate::scenario::{automatic_step, doubtful_radius, tidy};
+use crate::drive::{End, Run};
+use engine::clock::SHORTEST_TIME_STEP;
+use engine::forces::rates::Rates;
+use engine::geometry::Walls;
+use engine::journeys::{Change, ChangeKind, Kind};
+use engine::scene::Scene;
+use engine::simulation::{EventKind, Limited, SPOT_RADIUS};
+use engine::stability::{FITTED, Scheme, three_digits};
+use scenario::measurements::LongestQueue;
+use scenario::quote::shown;
+use scenario::{automatic_step, doubtful_radius, tidy};
 
 /// Notes on displaced agents, stopped moves, clamped speeds, agents that waited for room, queues that were too long for
 /// their line or too dense, and pushes without agents.

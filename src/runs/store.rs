@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 use super::error::StoreError;
 use super::identity::Identity;
 use super::outputs::{try_folder, write_whole};
-use crate::scenario::input::{self, LONGEST_TEXT};
-use crate::scenario::quote::shown_message;
+use scenario::input::{self, LONGEST_TEXT};
+use scenario::quote::shown_message;
 
 /// The extensions of files that commands write beside the folder of results.
 const RESULTS: [&str; 5] = ["md", "csv", "json", "svg", "png"];

@@ -6,11 +6,11 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::engine::journeys::{Kind, Place};
-use crate::engine::scene::Scene;
-use crate::engine::simulation::{self, PlaceState, Simulation};
-use crate::runs::drive::{End, Run};
-use crate::scenario::measurements::{
+use crate::drive::{End, Run};
+use engine::journeys::{Kind, Place};
+use engine::scene::Scene;
+use engine::simulation::{self, PlaceState, Simulation};
+use scenario::measurements::{
     HighestDensity, Left, LongestQueue, Metric, StuckGroup, times_to_leave,
 };
 

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use crate::engine::math::Vector;
-use crate::engine::neighbors::{BLOCK, ClusterBlock};
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{
+use engine::math::Vector;
+use engine::neighbors::{BLOCK, ClusterBlock};
+use engine::pairs::prelude::*;
+use engine::pairs::{
     Bodies, Lanes, Level, PairSum, Simd, add_pairs, dispatch, load, splat, spread, store,
 };
 

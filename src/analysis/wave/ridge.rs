@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::space_time::SpaceTime;
-use crate::analysis::statistics::{Estimate, Line, jackknife, vertex};
+use crate::statistics::{Estimate, Line, jackknife, vertex};
 
 /// Range of wave speeds that are tried, m/s.
 const SPEEDS: [f64; 2] = [2.0, 40.0];

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::engine::frame::Frame;
+use engine::frame::Frame;
 
 /// A strip along the x axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

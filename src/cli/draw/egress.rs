@@ -9,11 +9,11 @@ use crate::cli::failure::Failure;
 use crate::cli::inputs::{scenario, tracks};
 use crate::cli::moment;
 use crate::cli::terminal::tell;
-use crate::lab::egress::Egress;
-use crate::runs::case::Source;
-use crate::runs::drive::Run;
-use crate::runs::outputs::{Manner, Outputs};
-use crate::scenario::trajectories::{ReadOptions, Unit};
+use lab::egress::Egress;
+use runs::case::Source;
+use runs::drive::Run;
+use runs::outputs::{Manner, Outputs};
+use scenario::trajectories::{ReadOptions, Unit};
 
 /// Draws the curve, and prints the table.
 pub fn draw(options: &DrawOptions, out: &Path, mut outputs: Outputs) -> Result<(), Failure> {

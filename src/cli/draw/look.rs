@@ -2,13 +2,13 @@
 
 use crate::cli::failure::Failure;
 use crate::cli::frames::{Run, kernel};
-use crate::engine::math::Vector;
-use crate::lab::measure::{Fields, Mean, Person, Site, cells_over};
-use crate::output::colors::ColorMap;
-use crate::output::picture::{Coloring, Field};
-use crate::output::plot::{Cells, ColorBar};
-use crate::scenario::quote::shown;
-use crate::scenario::suggestion;
+use engine::math::Vector;
+use lab::measure::{Fields, Mean, Person, Site, cells_over};
+use output::colors::ColorMap;
+use output::picture::{Coloring, Field};
+use output::plot::{Cells, ColorBar};
+use scenario::quote::shown;
+use scenario::suggestion;
 
 /// `--color` for agents in the colors of what they do.
 pub const NONE: &str = "none";

@@ -23,11 +23,11 @@ use super::interrupt::Interrupt;
 use super::moment;
 use super::terminal::tell;
 use super::watch::bar;
-use crate::output::picture::{Paths, Picture, Trails};
-use crate::output::plot::{Animation, PAPER_DPI, Print};
-use crate::runs::outputs::{Manner, Outputs};
-use crate::scenario::trajectories::{ReadOptions, Unit};
 use look::{Look, NONE};
+use output::picture::{Paths, Picture, Trails};
+use output::plot::{Animation, PAPER_DPI, Print};
+use runs::outputs::{Manner, Outputs};
+use scenario::trajectories::{ReadOptions, Unit};
 
 /// The width of pictures without another one, millimeters: two columns of a paper.
 const WIDTH_MM: f64 = 180.0;

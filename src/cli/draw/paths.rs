@@ -5,11 +5,11 @@ use std::sync::Arc;
 use serde_json::json;
 
 use crate::cli::failure::Failure;
-use crate::engine::math::Vector;
-use crate::engine::ways::{Destination, Ways};
-use crate::output::picture::Paths;
-use crate::scenario::quote::shown;
-use crate::scenario::{Scenario, WayFinding, suggestion};
+use engine::math::Vector;
+use engine::ways::{Destination, Ways};
+use output::picture::Paths;
+use scenario::quote::shown;
+use scenario::{Scenario, WayFinding, suggestion};
 
 /// The ways to the place or point that `text` names.
 pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {

@@ -4,10 +4,10 @@ use crate::cli::failure::Failure;
 use crate::cli::frames::{Frames, Run, speeds};
 use crate::cli::moment;
 use crate::cli::watch::Progress;
-use crate::engine::scene::Scene;
-use crate::engine::simulation::Simulation;
-use crate::output::picture::Crowd;
-use crate::scenario::Scenario;
+use engine::scene::Scene;
+use engine::simulation::Simulation;
+use output::picture::Crowd;
+use scenario::Scenario;
 
 /// The value of agent `i` in an evaluated frame.
 type Value = fn(&Simulation, usize) -> f64;

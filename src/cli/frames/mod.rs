@@ -4,16 +4,16 @@ pub mod recorded;
 pub mod tracked;
 
 use crate::cli::failure::Failure;
-use crate::engine::boundary::WallMethod;
-use crate::engine::math::Vector;
-use crate::engine::scene::{Region, Scene};
-use crate::engine::simulation::Simulation;
-use crate::lab::measure::{Behind, Kernel, MOST_HIDDEN, Site, parts};
-use crate::output::colors::{DENSITY_RANGE, SPEED_RANGE};
-use crate::output::picture::Crowd;
-use crate::scenario::Scenario;
-use crate::scenario::floor_plan::Label;
-use crate::scenario::measurements::Observed;
+use engine::boundary::WallMethod;
+use engine::math::Vector;
+use engine::scene::{Region, Scene};
+use engine::simulation::Simulation;
+use lab::measure::{Behind, Kernel, MOST_HIDDEN, Site, parts};
+use output::colors::{DENSITY_RANGE, SPEED_RANGE};
+use output::picture::Crowd;
+use scenario::Scenario;
+use scenario::floor_plan::Label;
+use scenario::measurements::Observed;
 
 /// The names of quantities that every crowd has.
 const ALWAYS: [&str; 3] = ["density", "speed", "radius"];
@@ -97,7 +97,7 @@ impl Run {
 
     /// A run without a scenario, of which the picture shows these points.
     pub fn around(points: impl Iterator<Item = Vector>, frames: Box<dyn Frames>) -> Self {
-        let [low, high] = crate::engine::math::bounds(points).unwrap_or_default();
+        let [low, high] = engine::math::bounds(points).unwrap_or_default();
         let margin = Vector::repeat(MARGIN);
         Self {
             title: String::new(),

@@ -6,13 +6,13 @@ use std::path::Path;
 use super::{Film, Over, Run};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::talk;
-use crate::engine::agents::REFERENCE_RADIUS;
-use crate::engine::geometry::{Polygon, assemble};
-use crate::engine::math::Vector;
-use crate::engine::scene::Scene;
-use crate::output::picture::Crowd;
-use crate::output::recording::Recorded;
-use crate::scenario::Scenario;
+use engine::agents::REFERENCE_RADIUS;
+use engine::geometry::{Polygon, assemble};
+use engine::math::Vector;
+use engine::scene::Scene;
+use output::picture::Crowd;
+use output::recording::Recorded;
+use scenario::Scenario;
 
 /// Corners that are nearer to each other are one, meters: recordings have single precision.
 const TOLERANCE: f64 = 1e-4;

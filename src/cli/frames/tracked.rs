@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use super::{Film, Over, Run};
 use crate::cli::failure::Failure;
 use crate::cli::inputs;
-use crate::engine::agents::REFERENCE_RADIUS;
-use crate::engine::math::Vector;
-use crate::engine::scene::Scene;
-use crate::lab::measure::speed;
-use crate::output::picture::Crowd;
-use crate::scenario::quote::shown;
-use crate::scenario::trajectories::{Column, ReadOptions, Tracks, columns};
+use engine::agents::REFERENCE_RADIUS;
+use engine::math::Vector;
+use engine::scene::Scene;
+use lab::measure::speed;
+use output::picture::Crowd;
+use scenario::quote::shown;
+use scenario::trajectories::{Column, ReadOptions, Tracks, columns};
 
 struct Tracked {
     path: PathBuf,

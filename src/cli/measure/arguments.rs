@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use crate::analysis::crossing::{Line, Passages};
 use crate::cli::arguments::{PrintOptions, ProgramOptions};
 use crate::cli::values::{
     CutOff, cut_off, frame_rate, length, line, moment, passages, positive_seconds, region, segments,
 };
-use crate::engine::scene::Region;
+use analysis::crossing::{Line, Passages};
+use engine::scene::Region;
 
 #[derive(Args)]
 pub struct MeasureOptions {

@@ -11,16 +11,16 @@ use super::failure::Failure;
 use super::inputs::{in_order, site, tracks};
 use super::terminal::{talk, tell};
 use super::watch::bar;
-use crate::engine::boundary::WallMethod;
-use crate::lab::error::LabError;
-use crate::lab::gallery;
-use crate::lab::measure::{
+use engine::boundary::WallMethod;
+use lab::error::LabError;
+use lab::gallery;
+use lab::measure::{
     Behind, CellLimit, Kernel, MOST_HIDDEN, Measured, MomentRecorder, Options, Report, Results,
     check, files, measure, pictures, speed,
 };
-use crate::output::recording::check_enabled;
-use crate::runs::outputs::{Manner, Outputs};
-use crate::scenario::trajectories::{ReadOptions, Tracks, Unit};
+use output::recording::check_enabled;
+use runs::outputs::{Manner, Outputs};
+use scenario::trajectories::{ReadOptions, Tracks, Unit};
 
 pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     check_enabled()?;

@@ -13,18 +13,18 @@ use super::terminal::talk;
 use super::values::{ids, is_page, region};
 use page::PageOfRun;
 
-use crate::engine::clock::Clock;
-use crate::engine::simulation::Simulation;
-use crate::output::page::EmbeddedViewer;
-use crate::output::recording::{
+use engine::clock::Clock;
+use engine::simulation::Simulation;
+use output::page::EmbeddedViewer;
+use output::recording::{
     DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer, record_moment,
 };
-use crate::output::trajectory::{Format, Trajectory, frames_between, journal};
-use crate::runs::drive::{End, Observer, Run};
-use crate::runs::identity::Identity;
-use crate::runs::outputs::{Manner, Outputs};
-use crate::scenario::Scenario;
-use crate::scenario::measurements::Measurement;
+use output::trajectory::{Format, Trajectory, frames_between, journal};
+use runs::drive::{End, Observer, Run};
+use runs::identity::Identity;
+use runs::outputs::{Manner, Outputs};
+use scenario::Scenario;
+use scenario::measurements::Measurement;
 
 /// Rejects outputs that cannot be written, before any file is touched.
 pub fn check(

@@ -7,16 +7,16 @@ use super::{Due, kinds, recording_options};
 use crate::cli::arguments::RecordOptions;
 use crate::cli::failure::Failure;
 use crate::cli::results as report;
-use crate::engine::breakdown::Breakdown;
-use crate::engine::simulation::Simulation;
-use crate::output::events::Events;
-use crate::output::html::escape;
-use crate::output::page::{EmbeddedViewer, Moment, Page, PageOptions};
-use crate::output::picture::{Crowd, Picture};
-use crate::output::recording::DebugAgents;
-use crate::output::results::{reproducible, results, section};
-use crate::runs::drive::{End, Observer, Run};
-use crate::scenario::Scenario;
+use engine::breakdown::Breakdown;
+use engine::simulation::Simulation;
+use output::events::Events;
+use output::html::escape;
+use output::page::{EmbeddedViewer, Moment, Page, PageOptions};
+use output::picture::{Crowd, Picture};
+use output::recording::DebugAgents;
+use output::results::{reproducible, results, section};
+use runs::drive::{End, Observer, Run};
+use scenario::Scenario;
 
 /// The page of a run while it is being written.
 pub struct PageOfRun {

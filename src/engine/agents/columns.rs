@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// From this number of agents on, arrays are arranged in parallel.
 const SOME: usize = 4096;

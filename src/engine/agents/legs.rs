@@ -1,7 +1,7 @@
 //! The legs of agents.
 
 use super::Agents;
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 impl Agents {
     /// Puts legs under the bodies of agents that have none yet, at `time`, seconds. Agents enter upright: the legs of

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::engine::forces::walking::headings::{End, Fan};
-use crate::engine::simulation::Simulation;
+use crate::forces::walking::headings::{End, Fan};
+use crate::simulation::Simulation;
 
 /// The choice of an agent among headings.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::engine::forces::near;
-use crate::engine::simulation::Simulation;
+use crate::forces::near;
+use crate::simulation::Simulation;
 
 /// The legs under a body. Accelerations are in m/s².
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

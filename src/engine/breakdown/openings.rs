@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::engine::simulation::{Closed, Outlook, Simulation};
+use crate::simulation::{Closed, Outlook, Simulation};
 
 /// The choice of an agent between ways.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::engine::journeys::{Status, Trip};
-use crate::engine::simulation::{Closed, Decision, Expected, Prospect, Reason, Simulation};
+use crate::journeys::{Status, Trip};
+use crate::simulation::{Closed, Decision, Expected, Prospect, Reason, Simulation};
 
 /// The place that an agent on a journey visits.
 #[derive(Debug, Clone, PartialEq, Serialize)]

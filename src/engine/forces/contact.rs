@@ -10,11 +10,11 @@ use std::ops::Range;
 
 use schemars::JsonSchema;
 
-use crate::engine::forces::rates::{Extremes, Rates};
-use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, splat};
+use crate::forces::rates::{Extremes, Rates};
+use crate::frame::Frame;
+use crate::math::Vector;
+use crate::pairs::prelude::*;
+use crate::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, splat};
 
 /// Distance in meters below which a center is taken to lie on a wall. Coordinates up to 10⁶ m round by less;
 /// without it, rounding would decide the direction of the push.

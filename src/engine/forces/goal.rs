@@ -6,11 +6,11 @@ use std::ops::Range;
 
 use schemars::JsonSchema;
 
-use crate::engine::forces::rates::{Extremes, Rates};
-use crate::engine::frame::Frame;
-use crate::engine::math::{Vector, direction};
-use crate::engine::neighbors::BLOCK;
-use crate::engine::pairs::{Level, dispatch};
+use crate::forces::rates::{Extremes, Rates};
+use crate::frame::Frame;
+use crate::math::{Vector, direction};
+use crate::neighbors::BLOCK;
+use crate::pairs::{Level, dispatch};
 
 /// Parameters of Eq. 17.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]

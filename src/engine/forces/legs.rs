@@ -23,13 +23,11 @@ use std::ops::Range;
 
 use schemars::JsonSchema;
 
-use crate::engine::forces::rates::{Extremes, Rates};
-use crate::engine::frame::Frame;
-use crate::engine::math::{Vector, direction};
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{
-    Bodies, Lanes, Level, Real, Repulsion, Simd, dispatch, load, splat, spread,
-};
+use crate::forces::rates::{Extremes, Rates};
+use crate::frame::Frame;
+use crate::math::{Vector, direction};
+use crate::pairs::prelude::*;
+use crate::pairs::{Bodies, Lanes, Level, Real, Repulsion, Simd, dispatch, load, splat, spread};
 
 /// Parameters of the law.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]

@@ -1,6 +1,6 @@
 //! Steps 3, 3B and 4: one file per force, one pure function per equation.
 //!
-//! Every function reads the frozen [`Frame`](crate::engine::frame::Frame) and returns, or adds, its contribution to
+//! Every function reads the frozen [`Frame`](crate::frame::Frame) and returns, or adds, its contribution to
 //! accelerations in m/s², divided by mass or density. Sums over agents are computed for eight agents at a time;
 //! [`near`] sums pressure, viscosity and contact in one pass.
 

@@ -3,13 +3,13 @@
 
 use std::ops::Range;
 
-use crate::engine::forces::legs::{self, Both, Leans};
-use crate::engine::forces::{contact, pressure, viscosity};
-use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
-use crate::engine::neighbors::{BLOCK, ClusterBlock};
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{
+use crate::forces::legs::{self, Both, Leans};
+use crate::forces::{contact, pressure, viscosity};
+use crate::frame::Frame;
+use crate::math::Vector;
+use crate::neighbors::{BLOCK, ClusterBlock};
+use crate::pairs::prelude::*;
+use crate::pairs::{
     Columns, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, each, load, splat, spread,
     store,
 };

@@ -2,11 +2,11 @@
 
 use std::fmt::Debug;
 
-use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
+use crate::frame::Frame;
+use crate::math::Vector;
 
 /// A force on single agents, in addition to those of their profiles: a slope, a moving walkway, a wind. Add it to
-/// [`Scene::own_forces`](crate::engine::scene::Scene::own_forces); `examples/own_force.rs` shows one.
+/// [`Scene::own_forces`](crate::scene::Scene::own_forces); `examples/own_force.rs` shows one.
 ///
 /// The force acts on all agents in every frame, whatever their profile or push. Checkpoints do not contain it: add it
 /// again to the scene with which a run resumes.

@@ -5,12 +5,12 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use crate::engine::density::SphParameters;
-use crate::engine::forces::rates::Rates;
-use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Columns, Lanes, Level, Real, Simd, dispatch, lanes_from, load, splat};
+use crate::density::SphParameters;
+use crate::forces::rates::Rates;
+use crate::frame::Frame;
+use crate::math::Vector;
+use crate::pairs::prelude::*;
+use crate::pairs::{Columns, Lanes, Level, Real, Simd, dispatch, lanes_from, load, splat};
 
 /// Eq. 11 for eight agents i: −Σ_j m_j (p_i + p_j)/(2ρ_j) ∇W, times a coefficient.
 pub struct FromAgents<R: Real, S: Simd> {

@@ -1,8 +1,8 @@
 //! The force from outside on the agents of a push, as it was measured.
 
 use super::own::Force;
-use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
+use crate::frame::Frame;
+use crate::math::Vector;
 
 /// A force on the agents that take part in a push, whatever their profile.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
-//! The rates by which forces limit the time step: each force returns its own, and `analysis/stability.rs` computes the
+//! The rates by which forces limit the time step: each force returns its own, and `engine/stability.rs` computes the
 //! largest stable step from them.
 
-use crate::engine::density::SphParameters;
+use crate::density::SphParameters;
 
 /// The rates that determine the fastest modes of a crowd.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

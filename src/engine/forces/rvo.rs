@@ -18,12 +18,12 @@ use surroundings::Around;
 
 use schemars::JsonSchema;
 
-use crate::engine::clock::PAPER_COARSE_STEP;
-use crate::engine::forces::rates::Rates;
-use crate::engine::frame::Frame;
-use crate::engine::geometry::Wall;
-use crate::engine::math::Vector;
-use crate::engine::random::{self, Purpose};
+use crate::clock::PAPER_COARSE_STEP;
+use crate::forces::rates::Rates;
+use crate::frame::Frame;
+use crate::geometry::Wall;
+use crate::math::Vector;
+use crate::random::{self, Purpose};
 
 /// Parameters of Eq. 20 and of its sampling.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]

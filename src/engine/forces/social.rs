@@ -18,11 +18,11 @@ use near::Near;
 
 use schemars::JsonSchema;
 
-use crate::engine::forces::rates::{Extremes, Rates};
-use crate::engine::frame::Frame;
-use crate::engine::math::{Vector, direction};
-use crate::engine::neighbors::{BLOCK, Run};
-use crate::engine::pairs::{Bodies, Level, Real, Simd, dispatch, each};
+use crate::forces::rates::{Extremes, Rates};
+use crate::frame::Frame;
+use crate::math::{Vector, direction};
+use crate::neighbors::{BLOCK, Run};
+use crate::pairs::{Bodies, Level, Real, Simd, dispatch, each};
 
 /// Parameters of Eqs. 18 and 19 and of the field of view.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use crate::engine::forces::near::PairCoefficients;
-use crate::engine::forces::{contact, pressure};
-use crate::engine::neighbors::{BLOCK, ClusterBlock};
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{
+use crate::forces::near::PairCoefficients;
+use crate::forces::{contact, pressure};
+use crate::neighbors::{BLOCK, ClusterBlock};
+use crate::pairs::prelude::*;
+use crate::pairs::{
     Columns, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, load, splat, spread, store,
 };
 

@@ -7,10 +7,10 @@ use std::ops::Range;
 
 use schemars::JsonSchema;
 
-use crate::engine::forces::rates::Rates;
-use crate::engine::frame::Frame;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, splat};
+use crate::forces::rates::Rates;
+use crate::frame::Frame;
+use crate::pairs::prelude::*;
+use crate::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, splat};
 
 /// The viscosity force of one profile.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]

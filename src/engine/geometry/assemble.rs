@@ -12,7 +12,7 @@ use super::corners::Corners;
 use super::ring::signed_area;
 use super::ring_index::RingIndex;
 use super::{Area, PolygonError, Ring, bounds_of, index_of};
-use crate::engine::math::{Vector, sides};
+use crate::math::{Vector, sides};
 
 /// A piece of an edge, by the numbers of its end points.
 #[derive(Clone, Copy)]

@@ -5,7 +5,7 @@
 //! behind the end of a wall, or a stretch along a wall.
 
 use super::Walls;
-use crate::engine::math::{Vector, direction};
+use crate::math::{Vector, direction};
 
 /// Shorter pieces and distances come from rounding, meters.
 const TINY: f64 = 1e-6;

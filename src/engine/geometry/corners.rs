@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// Distinct points, hashed by the cells of a grid whose cell size is the tolerance. Cells are only looked up,
 /// never iterated, so that the result does not depend on hash order.

@@ -3,7 +3,7 @@
 //! Plain form: `hidden_region` in `examples/paper.rs`.
 
 use super::Wall;
-use crate::engine::math::{Vector, perpendicular};
+use crate::math::{Vector, perpendicular};
 
 /// Rounding error of an angle after a full turn and back, radians. A part that ends within this of the whole
 /// region's end takes that end, which is known exactly (tan is steep close to a wall).

@@ -29,7 +29,7 @@ pub use walls::Walls;
 use parry2d::bounding_volume::Aabb;
 use parry2d::partitioning::{Bvh, BvhBuildStrategy};
 
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// The bounding box of some points.
 fn bounds_of(points: impl IntoIterator<Item = Vector>) -> Aabb {

@@ -5,7 +5,7 @@ use parry2d::bounding_volume::Aabb;
 use super::ring::{Ring, encloses, signed_area};
 use super::ring_index::{AreaIndex, RingIndex};
 use super::{bounds_of, index_of};
-use crate::engine::math::{Vector, sides};
+use crate::math::{Vector, sides};
 
 /// Edges of different rings may cross by this many meters, or by this fraction of the whole extent, whichever is
 /// larger. In floor plans, corners are computed on a grid and moved by up to a micrometer to a given corner, across the

@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 use parry2d::partitioning::Bvh;
 
 use super::{Area, Ring, bounds_of, index_of};
-use crate::engine::math::{Vector, sides};
+use crate::math::{Vector, sides};
 
 /// Rings with more corners than this get an index of their edges.
 const FEW: usize = 32;

@@ -76,8 +76,8 @@ fn crossing(first: &HiddenRegion, second: &HiddenRegion) -> Option<f64> {
         return None;
     }
     // p with p·n₁ = d₁ and p·n₂ = d₂
-    let p = (crate::engine::math::perpendicular(first.towards) * second.distance
-        - crate::engine::math::perpendicular(second.towards) * first.distance)
+    let p = (crate::math::perpendicular(first.towards) * second.distance
+        - crate::math::perpendicular(second.towards) * first.distance)
         / turn;
     let inside = |region: &HiddenRegion| {
         let s = p.dot(&region.along);

@@ -4,7 +4,7 @@ use parry2d::query::PointQueryWithLocation;
 use parry2d::shape::{Segment, SegmentPointLocation};
 
 use super::{from_parry, to_parry};
-use crate::engine::math::{Vector, perpendicular};
+use crate::math::{Vector, perpendicular};
 
 /// A wall stops moves up to this distance beyond its ends, meters: more than the rounding of coordinates up to 10⁶ m,
 /// so that no agent slips between two walls at their corner.

@@ -4,7 +4,7 @@ use parry2d::bounding_volume::{Aabb, BoundingVolume};
 use parry2d::partitioning::Bvh;
 
 use super::{Polygon, Wall, WallPart, bounds_of, index_of, to_parry};
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// Distance in front of a wall at which a move stops, meters: far above the rounding of coordinates up to
 /// 10⁶ m, far below anything that matters to a person.

@@ -8,8 +8,8 @@ pub use trip::{Status, Trip};
 
 use std::ops::Range;
 
-use crate::engine::geometry::Ring;
-use crate::engine::math::Vector;
+use crate::geometry::Ring;
+use crate::math::Vector;
 
 /// The places and journeys of a scene.
 #[derive(Debug, Clone, Default, PartialEq)]

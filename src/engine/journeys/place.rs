@@ -1,9 +1,9 @@
 //! Places that agents visit: exits, waypoints, waiting areas and queues.
 
-use crate::engine::distribution::Distribution;
-use crate::engine::geometry::Ring;
-use crate::engine::math::{Vector, direction, sides};
-use crate::engine::ways::{Goal, nearest_on};
+use crate::distribution::Distribution;
+use crate::geometry::Ring;
+use crate::math::{Vector, direction, sides};
+use crate::ways::{Goal, nearest_on};
 
 /// A place that agents visit.
 #[derive(Debug, Clone, PartialEq)]

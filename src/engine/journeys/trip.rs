@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// The progress of an agent on its journey.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::{Grid, Run};
-use crate::engine::math::{Vector, bounds};
+use crate::math::{Vector, bounds};
 
 /// The number of agents that are processed together, and whose lists share memory.
 pub const BLOCK: usize = 128;

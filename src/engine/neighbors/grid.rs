@@ -6,8 +6,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::Run;
-use crate::engine::math::{Vector, bounds};
-use crate::engine::period::Period;
+use crate::math::{Vector, bounds};
+use crate::period::Period;
 
 /// The fewest agents per parallel task.
 const SOME: usize = 4096;

@@ -23,10 +23,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::engine::agents::{Agents, Spare};
-use crate::engine::geometry::Walls;
-use crate::engine::math::{Vector, bounds};
-use crate::engine::period::Period;
+use crate::agents::{Agents, Spare};
+use crate::geometry::Walls;
+use crate::math::{Vector, bounds};
+use crate::period::Period;
 use shifts::Tiles;
 use wall_cells::WallCells;
 

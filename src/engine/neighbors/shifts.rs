@@ -7,7 +7,7 @@
 //! of two tiles that touch, or of one tile, differ at most by the diagonal of the rectangle around all of them.
 
 use super::Grid;
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// The number of agents, one after the other in the order of the sort, whose shifts have one rectangle.
 pub const STRIP: usize = 32;

@@ -2,8 +2,8 @@
 
 use std::sync::OnceLock;
 
-use crate::engine::geometry::Walls;
-use crate::engine::math::{Vector, bounds};
+use crate::geometry::Walls;
+use crate::math::{Vector, bounds};
 
 /// The side of a cell, meters: doubled until there are few enough cells.
 const SIDE: f64 = 1.0;

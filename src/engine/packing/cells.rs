@@ -4,7 +4,7 @@ use rand::Rng;
 
 use super::Space;
 use super::taken::Taken;
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// The most cells of a search, in addition to those per body. An area that needs more, because it has little room for
 /// its extent, is not searched completely.

@@ -1,8 +1,8 @@
 //! Places that are taken.
 
 use super::{Body, ROUNDING};
-use crate::engine::math::Vector;
-use crate::engine::period::Period;
+use crate::math::Vector;
+use crate::period::Period;
 
 /// The most cells per body.
 const CELLS_PER_BODY: usize = 4;

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use super::real::{LANES, Real};
 use super::{Level, dispatch};
-use crate::engine::agents::Agents;
-use crate::engine::math::{Vector, direction};
-use crate::engine::neighbors::{BLOCK, TASK};
-use crate::engine::period::Period;
+use crate::agents::Agents;
+use crate::math::{Vector, direction};
+use crate::neighbors::{BLOCK, TASK};
+use crate::period::Period;
 
 /// One array per quantity, in the agents' order, padded by [`LANES`] entries so that the last vector load stays in
 /// bounds.

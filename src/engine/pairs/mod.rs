@@ -2,11 +2,11 @@
 //! module that names fearless_simd.
 //!
 //! A dense scene spends nearly all of its time here. Agents that are close together (see
-//! [`Clusters`](crate::engine::neighbors::Clusters)) share their neighbors, so the sums of eight agents are computed
+//! [`Clusters`](crate::neighbors::Clusters)) share their neighbors, so the sums of eight agents are computed
 //! together, from data packed in [`Columns`]. Each summand over listed neighbors is a [`PairSum`], defined with its
-//! equation in [`density`](crate::engine::density) (Eq. 9), [`near`](crate::engine::forces::near) (Eqs. 7, 11 and 22),
-//! [`virial`](crate::engine::forces::virial) and [`walking`](crate::engine::forces::walking);
-//! [`social`](crate::engine::forces::social) has a loop of its own (Eq. 18). Each agent is included in its own sums: it
+//! equation in [`density`](crate::density) (Eq. 9), [`near`](crate::forces::near) (Eqs. 7, 11 and 22),
+//! [`virial`](crate::forces::virial) and [`walking`](crate::forces::walking);
+//! [`social`](crate::forces::social) has a loop of its own (Eq. 18). Each agent is included in its own sums: it
 //! adds to its own density, but exerts no force on itself.
 
 mod columns;
@@ -25,9 +25,9 @@ pub use sums::{
 };
 pub use vectors::Vectors;
 
-use crate::engine::agents::Agents;
-use crate::engine::math::Vector;
-use crate::engine::period::Period;
+use crate::agents::Agents;
+use crate::math::Vector;
+use crate::period::Period;
 
 /// The precision of sums over pairs; everything else is in double precision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -55,8 +55,8 @@ pub enum Packed {
 macro_rules! each {
     ($packed:expr, $columns:ident => $body:expr) => {
         match $packed {
-            $crate::engine::pairs::Packed::Double($columns) => $body,
-            $crate::engine::pairs::Packed::Mixed($columns) => $body,
+            $crate::pairs::Packed::Double($columns) => $body,
+            $crate::pairs::Packed::Mixed($columns) => $body,
         }
     };
 }
@@ -89,7 +89,7 @@ impl Packed {
     }
 
     /// Packs the bodies of all agents. Coordinates may wrap with a period of twice `extent` meters (see
-    /// [`Clusters::extent`](crate::engine::neighbors::Clusters::extent)).
+    /// [`Clusters::extent`](crate::neighbors::Clusters::extent)).
     pub fn take_bodies(
         &mut self,
         agents: &Agents,

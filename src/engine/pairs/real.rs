@@ -4,10 +4,10 @@ use std::fmt::Debug;
 
 use fearless_simd::{Simd, f32x8, f64x8, i32x8, prelude::*};
 
-use crate::engine::math::{Vector, greatest};
+use crate::math::{Vector, greatest};
 
 /// The number of agents whose sums are computed together: one cluster, on every processor.
-pub const LANES: usize = crate::engine::neighbors::CLUSTER;
+pub const LANES: usize = crate::neighbors::CLUSTER;
 
 /// [`LANES`] numbers of type `R`.
 pub type Lanes<R, S> = <R as Real>::Lanes<S>;

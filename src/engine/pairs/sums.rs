@@ -8,8 +8,8 @@ use fearless_simd::{Level, Simd, dispatch, f64x2, f64x8, prelude::*};
 
 use super::columns::Bodies;
 use super::real::{LANES, Lanes, Real};
-use crate::engine::math::Vector;
-use crate::engine::neighbors::Run;
+use crate::math::Vector;
+use crate::neighbors::Run;
 
 /// A sum over agents j, for [`LANES`] agents i.
 pub trait PairSum<R: Real, S: Simd> {

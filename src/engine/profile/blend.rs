@@ -5,16 +5,16 @@
 use std::ops::Range;
 
 use super::{Navigation, Override, Profile};
-use crate::engine::density::SphParameters;
-use crate::engine::forces::legs::Legs;
-use crate::engine::forces::near::PairCoefficients;
-use crate::engine::forces::rvo::Rvo;
-use crate::engine::forces::social::SocialForce;
-use crate::engine::forces::walking::WalkingLaw;
-use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
-use crate::engine::neighbors::BLOCK;
-use crate::engine::pairs::Reach;
+use crate::density::SphParameters;
+use crate::forces::legs::Legs;
+use crate::forces::near::PairCoefficients;
+use crate::forces::rvo::Rvo;
+use crate::forces::social::SocialForce;
+use crate::forces::walking::WalkingLaw;
+use crate::frame::Frame;
+use crate::math::Vector;
+use crate::neighbors::BLOCK;
+use crate::pairs::Reach;
 
 /// Largest number of profiles in a blend. Every group of agents has its own copy of them.
 const MOST_STEPS: usize = 16;

@@ -1,6 +1,6 @@
 //! The terms of an agent's acceleration.
 
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// Accelerations of one agent by one profile, term by term, m/s²; `None` if the profile has no such term.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,10 +1,10 @@
 //! The forces of walls on an agent, wall by wall.
 
 use super::{Blend, Override, feels_contact, feels_sph};
-use crate::engine::boundary::WallMethod;
-use crate::engine::forces::{contact, pressure};
-use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
+use crate::boundary::WallMethod;
+use crate::forces::{contact, pressure};
+use crate::frame::Frame;
+use crate::math::Vector;
 
 impl Blend {
     /// Passes `take` each wall that presses on agent `i` of a frozen frame and the acceleration by it, m/s²: pressure

@@ -1,11 +1,11 @@
 //! The quantities that a scene needs.
 
-use crate::engine::agents::Agents;
-use crate::engine::forces::near::Wanted;
-use crate::engine::forces::walking::{Headings, WalkingLaw};
-use crate::engine::profile::Profile;
-use crate::engine::scene::Scene;
-use crate::engine::ways::Narrowings;
+use crate::agents::Agents;
+use crate::forces::near::Wanted;
+use crate::forces::walking::{Headings, WalkingLaw};
+use crate::profile::Profile;
+use crate::scene::Scene;
+use crate::ways::Narrowings;
 
 /// The widest place that counts as a narrowing, meters.
 const WIDEST_NARROWING: f64 = 6.0;

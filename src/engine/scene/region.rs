@@ -1,6 +1,6 @@
 //! Rectangles.
 
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// An axis-aligned rectangle, borders included.
 #[derive(Debug, Clone, Copy, PartialEq)]

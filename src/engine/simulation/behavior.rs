@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::Fixed;
-use crate::engine::agents::Agents;
-use crate::engine::profile::{Blend, Override};
+use crate::agents::Agents;
+use crate::profile::{Blend, Override};
 
 impl Fixed {
     pub(super) fn blend(&self, agents: &Agents, i: usize) -> &Blend {

@@ -4,10 +4,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::Crowd;
-use crate::engine::clock::Clock;
-use crate::engine::journeys::{Kind, Place, Status};
-use crate::engine::scene::Scene;
-use crate::engine::ways::{Destination, Step};
+use crate::clock::Clock;
+use crate::journeys::{Kind, Place, Status};
+use crate::scene::Scene;
+use crate::ways::{Destination, Step};
 
 /// The flow through an opening is averaged over this time, seconds.
 const OBSERVED: f64 = 15.0;
@@ -41,7 +41,7 @@ fn bin_of(length: f64) -> usize {
 /// The agents bound for a line, and those that have passed it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stream {
-    /// `nearer[k]` is the number of agents bound for it that are nearer than k half meters.
+    /// `nearer[k]` is the number of agents bound for it that are nearer than k bins.
     nearer: Vec<u32>,
     /// The number of agents that have passed it since the last second.
     passes: u32,

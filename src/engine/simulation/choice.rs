@@ -6,11 +6,11 @@ use serde::Serialize;
 use super::plans::is_clearly_quicker;
 use super::sight::Seen;
 use super::{Crowd, PlaceState, Simulation, bound};
-use crate::engine::journeys::{Choice, Journey, JourneyStage, Kind, Place, Status, Trip};
-use crate::engine::math::Vector;
-use crate::engine::random::{self, Purpose};
-use crate::engine::scene::Scene;
-use crate::engine::ways::{Destination, SLACK};
+use crate::journeys::{Choice, Journey, JourneyStage, Kind, Place, Status, Trip};
+use crate::math::Vector;
+use crate::random::{self, Purpose};
+use crate::scene::Scene;
+use crate::ways::{Destination, SLACK};
 
 /// Agents that choose the nearest place choose again after this time, seconds.
 const NEAREST_EVERY: f64 = 1.0;

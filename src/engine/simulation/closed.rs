@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::Simulation;
-use crate::engine::journeys::{Change, ChangeKind};
-use crate::engine::math::Vector;
-use crate::engine::scene::Scene;
-use crate::engine::ways::{Rooms, Step};
+use crate::journeys::{Change, ChangeKind};
+use crate::math::Vector;
+use crate::scene::Scene;
+use crate::ways::{Rooms, Step};
 
 /// A way goes on this far behind an opening, meters.
 const BEYOND: f64 = 1e-3;

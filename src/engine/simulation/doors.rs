@@ -2,9 +2,9 @@
 
 use super::Crowd;
 use super::passing::{Crossing, across, crossed};
-use crate::engine::journeys::{Kind, Place};
-use crate::engine::math::{Vector, direction};
-use crate::engine::scene::Scene;
+use crate::journeys::{Kind, Place};
+use crate::math::{Vector, direction};
+use crate::scene::Scene;
 
 /// Agents that may not pass an exit stop this far before its line, meters.
 const STOP_BEFORE: f64 = 1e-3;

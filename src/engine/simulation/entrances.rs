@@ -5,11 +5,11 @@ use rand::distr::Open01;
 use serde::{Deserialize, Serialize};
 
 use super::{Crowd, Fault};
-use crate::engine::agents::NewAgent;
-use crate::engine::entrance::{Entrance, place};
-use crate::engine::math::{Vector, clamp_length};
-use crate::engine::random::{self, Purpose};
-use crate::engine::scene::Scene;
+use crate::agents::NewAgent;
+use crate::entrance::{Entrance, place};
+use crate::math::{Vector, clamp_length};
+use crate::random::{self, Purpose};
+use crate::scene::Scene;
 
 /// Progress at one entrance.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

@@ -6,15 +6,15 @@ use rayon::iter::{Either, repeat_n};
 use rayon::prelude::*;
 
 use super::{Fixed, Simulation, Stage};
-use crate::engine::density;
-use crate::engine::forces::goal;
-use crate::engine::forces::near::{self, PairCoefficients};
-use crate::engine::forces::rvo::{Scratch, Wish};
-use crate::engine::forces::walking::{Decided, Due, WalkingLaw, some_meet};
-use crate::engine::frame::Frame;
-use crate::engine::math::{Vector, are_finite, clamp_length, direction};
-use crate::engine::neighbors::{BLOCK, ListPolicy, TASK};
-use crate::engine::pairs::{Level, dispatch, each};
+use crate::density;
+use crate::forces::goal;
+use crate::forces::near::{self, PairCoefficients};
+use crate::forces::rvo::{Scratch, Wish};
+use crate::forces::walking::{Decided, Due, WalkingLaw, some_meet};
+use crate::frame::Frame;
+use crate::math::{Vector, are_finite, clamp_length, direction};
+use crate::neighbors::{BLOCK, ListPolicy, TASK};
+use crate::pairs::{Level, dispatch, each};
 
 impl Simulation {
     /// Runs `work` on a thread of the thread pool, unless the crowd is too small for a second thread. Started from

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::{Crowd, Simulation};
-use crate::engine::journeys::Status;
-use crate::engine::math::Vector;
-use crate::engine::scene::Scene;
-use crate::engine::ways::{Destination, WayError, Ways};
+use crate::journeys::Status;
+use crate::math::Vector;
+use crate::scene::Scene;
+use crate::ways::{Destination, WayError, Ways};
 
 /// An agent is not present.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,11 +5,11 @@
 use rayon::prelude::*;
 
 use super::{Arrival, Crowd, Fault, Simulation, Stage};
-use crate::engine::geometry::Walls;
-use crate::engine::math::{Vector, clamp_length, greatest, is_finite};
-use crate::engine::neighbors::{BLOCK, STRIP, Shifts, TASK};
-use crate::engine::pairs::{Level, dispatch};
-use crate::engine::scene::{Integrator, Scene};
+use crate::geometry::Walls;
+use crate::math::{Vector, clamp_length, greatest, is_finite};
+use crate::neighbors::{BLOCK, STRIP, Shifts, TASK};
+use crate::pairs::{Level, dispatch};
+use crate::scene::{Integrator, Scene};
 
 impl Simulation {
     /// Step 5: moves all agents by one frame and removes those that have reached their goal.

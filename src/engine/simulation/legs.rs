@@ -4,13 +4,13 @@ use rayon::prelude::*;
 
 use super::integrate::{Motion, find_motions, move_freely};
 use super::{Fixed, Simulation, Stage};
-use crate::engine::agents::Agents;
-use crate::engine::forces::legs::{Both, Legs};
-use crate::engine::frame::Frame;
-use crate::engine::geometry::Walls;
-use crate::engine::math::{Vector, clamp_length, direction};
-use crate::engine::neighbors::{BLOCK, TASK};
-use crate::engine::pairs::{Level, dispatch};
+use crate::agents::Agents;
+use crate::forces::legs::{Both, Legs};
+use crate::frame::Frame;
+use crate::geometry::Walls;
+use crate::math::{Vector, clamp_length, direction};
+use crate::neighbors::{BLOCK, TASK};
+use crate::pairs::{Level, dispatch};
 
 impl Simulation {
     /// Puts legs under agents that entered since.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// The side of the cells in which moves are counted, meters.
 const CELL: f64 = 1.0;

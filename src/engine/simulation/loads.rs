@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use super::Simulation;
-use crate::engine::forces::near::PairCoefficients;
-use crate::engine::forces::virial::virials;
-use crate::engine::math::Vector;
-use crate::engine::neighbors::{BLOCK, TASK};
-use crate::engine::pairs::Columns;
+use crate::forces::near::PairCoefficients;
+use crate::forces::virial::virials;
+use crate::math::Vector;
+use crate::neighbors::{BLOCK, TASK};
+use crate::pairs::Columns;
 
 impl Simulation {
     /// Σ_j r_ij ⊗ a_ij of each agent of the evaluated frame as xx, xy and yy, m²/s², where a_ij is the acceleration of

@@ -8,11 +8,11 @@
 use rayon::prelude::*;
 
 use super::{Arrival, Crowd, Simulation, Stage, TripEnd};
-use crate::engine::journeys::{Kind, Place, Status};
-use crate::engine::math::{Vector, direction, perpendicular};
-use crate::engine::neighbors::{BLOCK, Neighbors, TASK};
-use crate::engine::scene::Scene;
-use crate::engine::ways::{nearest_on, side};
+use crate::journeys::{Kind, Place, Status};
+use crate::math::{Vector, direction, perpendicular};
+use crate::neighbors::{BLOCK, Neighbors, TASK};
+use crate::scene::Scene;
+use crate::ways::{nearest_on, side};
 
 /// The body of an agent that has left by an exit walks on this far behind the line, meters. With less, the flow through
 /// a door would depend on the position of the line, because agents walk slower behind a crowd than with free floor

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use super::bound::Stream;
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// The state of a place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

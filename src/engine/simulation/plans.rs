@@ -13,11 +13,11 @@ use rayon::prelude::*;
 use super::bound::{self, Stream};
 use super::times::{Outlook, SINGLE_FILE};
 use super::{Crowd, Simulation, Stage};
-use crate::engine::journeys::Status;
-use crate::engine::neighbors::{BLOCK, TASK};
-use crate::engine::random::{self, Purpose};
-use crate::engine::scene::Scene;
-use crate::engine::ways::{Known, Leaving, Plan, Rooms, Step, Ways};
+use crate::journeys::Status;
+use crate::neighbors::{BLOCK, TASK};
+use crate::random::{self, Purpose};
+use crate::scene::Scene;
+use crate::ways::{Known, Leaving, Plan, Rooms, Step, Ways};
 
 /// Agents are due again after a random time in this range, seconds.
 const AGAIN: [f64; 2] = [2.0, 5.0];

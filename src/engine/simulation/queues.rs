@@ -2,9 +2,9 @@
 
 use super::Crowd;
 use super::trips::stage_share;
-use crate::engine::journeys::{Kind, Queue, Status};
-use crate::engine::math::Vector;
-use crate::engine::scene::Scene;
+use crate::journeys::{Kind, Queue, Status};
+use crate::math::Vector;
+use crate::scene::Scene;
 
 /// Agents within this distance of the end of a queue join it, meters.
 const JOINING: f64 = 1.0;

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::engine::agents::NewAgent;
-use crate::engine::clock::Clock;
-use crate::engine::scene::{Goal, Push, Scene, Source};
+use crate::agents::NewAgent;
+use crate::clock::Clock;
+use crate::scene::{Goal, Push, Scene, Source};
 
 use super::entrances::{Backlog, Gate, Late};
 use super::{Crowd, Fault, Simulation, Stage};

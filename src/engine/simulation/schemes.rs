@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::integrate::Motion;
 use super::{Fault, Simulation, Stage};
-use crate::engine::math::Vector;
-use crate::engine::neighbors::{BLOCK, TASK};
+use crate::math::Vector;
+use crate::neighbors::{BLOCK, TASK};
 
 impl Simulation {
     /// The velocities of the frame were predicted with the accelerations of the previous frame. Corrects them first

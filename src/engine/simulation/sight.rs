@@ -4,10 +4,10 @@ use rayon::prelude::*;
 
 use super::Crowd;
 use super::choice::Chooser;
-use crate::engine::journeys::{Choice, Status, Trip};
-use crate::engine::neighbors::BLOCK;
-use crate::engine::scene::Scene;
-use crate::engine::ways::Leaving;
+use crate::journeys::{Choice, Status, Trip};
+use crate::neighbors::BLOCK;
+use crate::scene::Scene;
+use crate::ways::Leaving;
 
 /// What an agent that is due to choose sees, whatever others choose before.
 pub(super) struct Seen {

@@ -1,9 +1,9 @@
 //! What the time gap of the law of headings depends on.
 
 use super::{Fixed, Simulation};
-use crate::engine::forces::walking::headings::{Fan, Headings, before_wall};
-use crate::engine::frame::Frame;
-use crate::engine::math::{Vector, direction, perpendicular};
+use crate::forces::walking::headings::{Fan, Headings, before_wall};
+use crate::frame::Frame;
+use crate::math::{Vector, direction, perpendicular};
 
 /// Agents see narrowings up to this far beyond the point that they walk to, meters.
 const BEYOND: f64 = 1.0;

@@ -6,9 +6,9 @@ use super::integrate::shift;
 use super::schedule::Schedule;
 use super::trips;
 use super::{Outcome, Progress, Simulation};
-use crate::engine::agents::Agents;
-use crate::engine::math::Vector;
-use crate::engine::scene::Scene;
+use crate::agents::Agents;
+use crate::math::Vector;
+use crate::scene::Scene;
 
 /// The state: together with the scene, it determines the rest of a run. Densities, pressures, forces and other fields
 /// are computed from it. If no force reads the density, only observers use the mean density ρ̂

@@ -2,9 +2,9 @@
 
 use super::bound;
 use super::{Crowd, Progress, Simulation};
-use crate::engine::math::Vector;
-use crate::engine::scene::{Knowledge, Scene};
-use crate::engine::ways::{Destination, Known, Leaving, Rooms, Step};
+use crate::math::Vector;
+use crate::scene::{Knowledge, Scene};
+use crate::ways::{Destination, Known, Leaving, Rooms, Step};
 
 /// Waiting before a closed door is expected to take this long, seconds.
 const CLOSED: f64 = 3600.0;

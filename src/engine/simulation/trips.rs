@@ -10,11 +10,11 @@ use super::choice::Chooser;
 use super::place_state::PlaceState;
 use super::sight::Seen;
 use super::{Crowd, EventKind, Simulation, Stage};
-use crate::engine::clock::Clock;
-use crate::engine::journeys::{ChangeKind, Kind, Status, Trip, WaitingArea};
-use crate::engine::neighbors::{BLOCK, TASK};
-use crate::engine::random::{self, Purpose};
-use crate::engine::scene::Scene;
+use crate::clock::Clock;
+use crate::journeys::{ChangeKind, Kind, Status, Trip, WaitingArea};
+use crate::neighbors::{BLOCK, TASK};
+use crate::random::{self, Purpose};
+use crate::scene::Scene;
 
 /// The number of agents that have begun each journey, and the state of each place.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::expansion::Border;
 use super::mesh::Mesh;
-use crate::engine::math::{Vector, direction, perpendicular};
+use crate::math::{Vector, direction, perpendicular};
 
 /// Widens the visible cone of a corner beyond the lines of its walls, radians, so that rounding loses no position on
 /// such a line. Shortest ways never need it.

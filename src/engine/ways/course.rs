@@ -7,7 +7,7 @@ use super::floor::Floor;
 use super::map::{Next, PathMap};
 use super::rooms::Rooms;
 use super::route::{Destination, Route, Ways};
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// The most points of a course, far more than the corners of any way.
 const MOST_POINTS: usize = 10_000;

@@ -2,7 +2,7 @@
 
 use super::Step;
 use super::rooms::Rooms;
-use crate::engine::math::{Vector, direction};
+use crate::math::{Vector, direction};
 
 /// Where a way crosses an opening.
 #[derive(Debug, Clone, Copy, PartialEq)]

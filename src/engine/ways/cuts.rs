@@ -3,8 +3,8 @@
 use super::WayError;
 use super::mesh::{Mesh, side, to_segment};
 use super::narrow::{End, Narrow, narrow};
-use crate::engine::geometry::Area;
-use crate::engine::math::{Vector, direction};
+use crate::geometry::Area;
+use crate::math::{Vector, direction};
 
 /// Of two passages whose middles are nearer than this part of the width of the narrower one, such as the two sides of a
 /// wall with a door, only the narrower one is an opening.

@@ -4,8 +4,8 @@ use std::collections::{BTreeSet, HashMap};
 
 use super::mesh::{side, to_segment};
 use super::narrow::{End, Narrow};
-use crate::engine::geometry::Area;
-use crate::engine::math::{Vector, bounds, sides};
+use crate::geometry::Area;
+use crate::math::{Vector, bounds, sides};
 
 /// Two points by their numbers.
 pub type Edge = [usize; 2];

@@ -7,12 +7,10 @@ use super::corner::{Bend, Turn};
 use super::expansion::View;
 use super::floor::Floor;
 use super::mesh::{side, to_segment};
-use super::region::{Candidate, best};
+use super::region::{Candidate, TIE, best};
 use super::targets::{Entry, Source, Targets};
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
-/// Ways whose lengths differ by less than this count as equally long, meters.
-pub const TIE: f64 = 1e-9;
 /// Triangles with more entries are pruned early, to save memory.
 const MANY: u32 = 100;
 

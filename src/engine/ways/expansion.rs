@@ -1,7 +1,7 @@
 //! Triangular expansion (Bungiu et al. 2014): everything that is visible from a point, or along one direction.
 
 use super::mesh::Mesh;
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// The viewpoint of a cone.
 #[derive(Debug, Clone, Copy, PartialEq)]

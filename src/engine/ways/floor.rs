@@ -7,8 +7,8 @@ use super::corner::{Bend, Corner, Turn};
 use super::expansion::{Eye, Sight, View, expand};
 use super::grid::Grid;
 use super::mesh::{Mesh, side};
-use crate::engine::geometry::Area;
-use crate::engine::math::Vector;
+use crate::geometry::Area;
+use crate::math::Vector;
 
 /// A floor with its corners and the ways between them.
 #[derive(Debug, Clone)]

@@ -7,7 +7,7 @@ use super::expansion::{Border, Eye, Sight, View, expand};
 use super::floor::Floor;
 use super::mesh::side;
 use super::targets::{Source, Targets};
-use crate::engine::math::{Vector, perpendicular};
+use crate::math::{Vector, perpendicular};
 
 /// Where agents want to go.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 
 use super::mesh::{Mesh, side};
-use crate::engine::math::{Vector, bounds};
+use crate::math::{Vector, bounds};
 
 /// Cells with more triangles are divided.
 const MANY: usize = 10;

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::mesh::{Mesh, to_segment};
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// Free distances are clamped to this, meters: agents farther from all limits are located again after such a move.
 const FARTHEST: f64 = 1.0;

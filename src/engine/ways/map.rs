@@ -12,7 +12,7 @@ use super::goal::{Goal, Seen};
 use super::parts::Parts;
 use super::region::{Candidate, Region};
 use super::targets::{Entry, Source, Targets};
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// An agent switches to another way only if that is shorter by this, meters, so that no agent wavers between two ways.
 pub const SLACK: f64 = 0.5;

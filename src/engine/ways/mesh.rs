@@ -9,8 +9,8 @@ use super::WayError;
 use super::edges::Edges;
 use super::expansion::Border;
 use super::narrow::{Narrow, narrow};
-use crate::engine::geometry::Area;
-use crate::engine::math::Vector;
+use crate::geometry::Area;
+use crate::math::Vector;
 
 /// A triangle of the floor.
 #[derive(Debug, Clone, PartialEq)]

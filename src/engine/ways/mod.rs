@@ -50,7 +50,7 @@ pub use rooms::{Rooms, WIDEST};
 pub use route::{Destination, Route, Walker, Ways};
 pub use steer::around;
 
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// The most goals that can be added after the start.
 const MOST_GOALS: usize = 1000;

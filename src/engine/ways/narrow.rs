@@ -6,7 +6,7 @@
 //! find all passages (Kallmann 2014).
 
 use super::mesh::{Mesh, nearest_on, to_segment};
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// A passage.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use super::mesh::Mesh;
 use super::narrow::{End, Narrow, narrow};
-use crate::engine::math::{Vector, bounds, direction};
+use crate::math::{Vector, bounds, direction};
 
 /// The side of a cell, meters.
 const CELL: f64 = 4.0;

@@ -10,7 +10,7 @@ use super::floor::Floor;
 use super::goal::Goal;
 use super::map::PathMap;
 use super::mesh::{side, to_segment};
-use crate::engine::math::{Vector, direction, perpendicular};
+use crate::math::{Vector, direction, perpendicular};
 
 /// Lines are shortened by this at both ends, meters.
 pub const MARGIN: f64 = 0.01;

@@ -6,7 +6,7 @@ use super::floor::Floor;
 use super::list::Lists;
 use super::region::{Candidate, Corners, best};
 use super::targets::{Entry, Targets};
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// Parts with more entries are halved if it pays.
 const FEW: usize = 8;

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::floor::Floor;
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// A passage between two walls.
 #[derive(Debug, Clone, Copy, PartialEq)]

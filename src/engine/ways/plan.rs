@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::opening::Step;
 use super::route::{Destination, Ways};
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 /// Another way than the shortest one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

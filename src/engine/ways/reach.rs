@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::cuts::parts;
 use super::map::{Next, Way};
 use super::route::{Destination, Ways};
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 impl Ways {
     /// The way from `p` to a destination, if it is nowhere narrower than the floor's least width.

@@ -1,10 +1,12 @@
 //! Regions: the positions from which a way goes straight to a target.
 
-use super::entries::TIE;
 use super::floor::Floor;
 use super::mesh::nearest_on;
 use super::targets::{Entry, Limit, Source, Targets};
-use crate::engine::math::{Vector, direction};
+use crate::math::{Vector, direction};
+
+/// Ways whose lengths differ by less than this count as equally long, meters.
+pub const TIE: f64 = 1e-9;
 
 /// A triangle, or a part of one.
 pub type Corners = [Vector; 3];

@@ -19,8 +19,8 @@ use super::limits::Limits;
 use super::map::PathMap;
 use super::mesh::Mesh;
 use super::opening::{MARGIN, Opening, Step, on_both_sides, openings};
-use crate::engine::geometry::Area;
-use crate::engine::math::{Vector, direction, perpendicular};
+use crate::geometry::Area;
+use crate::math::{Vector, direction, perpendicular};
 
 /// Wider passages are no openings, meters: the walk through them takes no waiting that counts.
 pub const WIDEST: f64 = 6.0;

@@ -13,8 +13,8 @@ use super::rooms::Rooms;
 use super::steer::{End, around, between_borders};
 use super::targets::Source;
 use super::{MOST_GOALS, WayError};
-use crate::engine::math::Vector;
-use crate::engine::random::{self, Purpose};
+use crate::math::Vector;
+use crate::random::{self, Purpose};
 
 /// Agents keep this distance from corners in addition to their radius, drawn for each agent, meters.
 const CLEARANCE: [f64; 2] = [0.05, 0.6];

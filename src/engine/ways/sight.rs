@@ -3,7 +3,7 @@
 use super::corner::Bend;
 use super::expansion::{Eye, View};
 use super::floor::Floor;
-use crate::engine::math::Vector;
+use crate::math::Vector;
 
 impl Floor {
     /// The visible cone of `bend` toward `p`, which lies in triangle `t`; `None` if no way goes straight from `p` to

@@ -2,7 +2,7 @@
 
 use super::corner::{Bend, Turn};
 use super::floor::Floor;
-use crate::engine::math::{Vector, direction, perpendicular};
+use crate::math::{Vector, direction, perpendicular};
 
 /// The heading of an agent at `p` that walks around a corner `distance` meters away: the tangent of the circle around
 /// the corner, on the side away from its walls. It stays between `near` and `far`, points on the edges of the corner's

@@ -4,7 +4,7 @@ use super::corner::{Bend, Turn};
 use super::expansion::Eye;
 use super::floor::Floor;
 use super::mesh::{nearest_on, part};
-use crate::engine::math::{Vector, direction};
+use crate::math::{Vector, direction};
 
 /// A part of a goal that ways go straight to.
 #[derive(Debug, Clone, Copy)]

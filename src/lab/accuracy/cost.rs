@@ -3,10 +3,10 @@
 use serde_json::Value;
 
 use super::scenes::{run_until, simulation};
-use crate::analysis::statistics::Range;
-use crate::lab::bench::timing::{Contender, alternate, ms_per_frame, pool};
-use crate::lab::error::LabError;
-use crate::scenario::Setting;
+use crate::bench::timing::{Contender, alternate, ms_per_frame, pool};
+use crate::error::LabError;
+use analysis::statistics::Range;
+use scenario::Setting;
 
 /// Simulated time of one measurement, seconds.
 const SECONDS: f64 = 1.2;

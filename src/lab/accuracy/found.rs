@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::front::{better, cheapest};
 use super::scenes::{Kind, Scene, names};
 use super::trials::Trial;
-use crate::analysis::statistics::Range;
-use crate::output::table::Table;
+use analysis::statistics::Range;
+use output::table::Table;
 
 /// A quantity whose error is measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]

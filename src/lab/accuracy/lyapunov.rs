@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::scenes::{by_id, continued, names, setting, simulation};
-use crate::analysis::statistics::Line;
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::lab::error::LabError;
+use crate::error::LabError;
+use analysis::statistics::Line;
+use engine::math::Vector;
+use engine::simulation::Simulation;
 
 /// The distance by which each agent is moved at the start, meters: far above rounding errors, far too small to change
 /// the forces.

@@ -2,8 +2,8 @@
 
 use super::found::{Found, Point as Setting};
 use super::scenes::Kind;
-use crate::lab::gallery::{curve, positive, with_legend};
-use crate::output::plot::{Axis, BLACK, Mark, Panel, Sheet, Style};
+use crate::gallery::{curve, positive, with_legend};
+use output::plot::{Axis, BLACK, Mark, Panel, Sheet, Style};
 
 /// The quantities drawn for scenes of motion: positions at all samples, velocity and density at the middle one, and the
 /// position error by the knob alone.

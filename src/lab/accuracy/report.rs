@@ -2,9 +2,9 @@
 
 use super::found::{self, Found};
 use super::scenes::names;
-use crate::lab::error::LabError;
-use crate::output::table::Table;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use output::table::Table;
+use runs::store::Store;
 
 /// The name of the table of the best choices of all scenes.
 pub const CHOICES: &str = "choices";

@@ -8,13 +8,13 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::lab::error::LabError;
-use crate::lab::jobs::read;
-use crate::lab::sweep::Study;
-use crate::scenario::input::embedded;
-use crate::scenario::{Scenario, Setting, built_in};
+use crate::error::LabError;
+use crate::jobs::read;
+use crate::sweep::Study;
+use engine::math::Vector;
+use engine::simulation::Simulation;
+use scenario::input::embedded;
+use scenario::{Scenario, Setting, built_in};
 
 /// The way in which a scene is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

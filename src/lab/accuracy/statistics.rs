@@ -1,8 +1,8 @@
 //! The errors of measurements, averaged over seeds: Table 1's numbers, speed by density, and the speed of a wave.
 
 use super::found::{Judged, Measured, Quantity};
-use crate::analysis::statistics::MeanStd;
-use crate::runs::summary::Summary;
+use analysis::statistics::MeanStd;
+use runs::summary::Summary;
 
 /// The metrics that are reported, with their names and units.
 const METRICS: [(&str, &str, &str); 4] = [

@@ -10,17 +10,17 @@ use super::scenes::{Kind, Scene, names};
 use super::trajectory::Trajectories;
 use super::trials::{Trial, few, reference, settings, trials};
 use super::{cost, pictures, statistics};
-use crate::analysis::statistics::Range;
-use crate::lab::error::LabError;
-use crate::lab::gallery;
-use crate::lab::jobs::{read, results};
-use crate::lab::sweep::{Cell, Study};
-use crate::runs::case::RunResult;
-use crate::runs::identity::Identity;
-use crate::runs::job::{Job, Listener, Progress};
-use crate::runs::store::Store;
-use crate::runs::summary::Summary;
-use crate::scenario::Setting;
+use crate::error::LabError;
+use crate::gallery;
+use crate::jobs::{read, results};
+use crate::sweep::{Cell, Study};
+use analysis::statistics::Range;
+use runs::case::RunResult;
+use runs::identity::Identity;
+use runs::job::{Job, Listener, Progress};
+use runs::store::Store;
+use runs::summary::Summary;
+use scenario::Setting;
 
 /// The plan of a measurement.
 #[derive(Clone)]

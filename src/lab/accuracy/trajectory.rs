@@ -10,12 +10,12 @@ use super::found::{Judged, Measured, Quantity};
 use super::lyapunov::Lyapunov;
 use super::scenes::{names, scenario, setting, simulation};
 use super::trials::Trial;
-use crate::engine::boundary::WallMethod;
-use crate::engine::clock::PAPER_TIME_STEP;
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::lab::error::LabError;
-use crate::scenario::Setting;
+use crate::error::LabError;
+use engine::boundary::WallMethod;
+use engine::clock::PAPER_TIME_STEP;
+use engine::math::Vector;
+use engine::simulation::Simulation;
+use scenario::Setting;
 
 /// The sampled times, seconds: about 0.5, 1 and 2, moved to times that are frames of all time steps.
 pub const SAMPLES: [f64; 3] = [0.4, 0.8, 2.0];

@@ -8,10 +8,10 @@ use serde::{Serialize, Serializer};
 use serde_json::Value;
 
 use super::scenes::{SCENES, scenario, setting};
-use crate::lab::error::LabError;
-use crate::lab::gallery::distinct;
-use crate::lab::sweep::{Cell, Study};
-use crate::scenario::Setting;
+use crate::error::LabError;
+use crate::gallery::distinct;
+use crate::sweep::{Cell, Study};
+use scenario::Setting;
 
 /// The label of the first entry.
 const DEFAULT: &str = "default";

@@ -1,13 +1,13 @@
 //! Crowds of any size and density, without walls.
 
 use super::timing::{failed, ms_per_frame};
-use crate::engine::agents::NewAgent;
-use crate::engine::math::Vector;
-use crate::engine::placement::Grid;
-use crate::engine::scene::{Group, Scene};
-use crate::engine::simulation::Simulation;
-use crate::lab::error::LabError;
-use crate::scenario::catalog::{self, Parameters};
+use crate::error::LabError;
+use engine::agents::NewAgent;
+use engine::math::Vector;
+use engine::placement::Grid;
+use engine::scene::{Group, Scene};
+use engine::simulation::Simulation;
+use scenario::catalog::{self, Parameters};
 
 /// Distance to the goals of agents that walk, meters: no agent arrives.
 const AHEAD: f64 = 100.0;

@@ -3,9 +3,9 @@
 use serde_json::{Value, json};
 
 use super::timing::{failed, ms_per_frame};
-use crate::engine::simulation::Simulation;
-use crate::lab::error::LabError;
-use crate::scenario::Scenario;
+use crate::error::LabError;
+use engine::simulation::Simulation;
+use scenario::Scenario;
 
 /// The distances between the middles of pillars, meters.
 const PITCH: [f64; 2] = [7.0, 8.5];

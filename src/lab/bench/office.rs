@@ -3,9 +3,9 @@
 use serde_json::{Value, json};
 
 use super::timing::{failed, ms_per_frame};
-use crate::engine::simulation::Simulation;
-use crate::lab::error::LabError;
-use crate::scenario::Scenario;
+use crate::error::LabError;
+use engine::simulation::Simulation;
+use scenario::Scenario;
 
 /// The sides of a room, and the width of its door, meters.
 const ROOM: [f64; 2] = [5.8, 5.0];

@@ -1,7 +1,7 @@
 //! Benchmarks, and the amount of their work.
 
 use super::report::{Findings, Report};
-use crate::lab::error::LabError;
+use crate::error::LabError;
 
 /// The amount of work of a measurement.
 #[derive(Debug, Clone, PartialEq)]

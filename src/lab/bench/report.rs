@@ -7,12 +7,12 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::plan::Plan;
-use crate::engine::pairs::Vectors;
-use crate::lab::error::LabError;
-use crate::lab::machine::Machine;
-use crate::output::plot::Sheet;
-use crate::output::table::Table;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::machine::Machine;
+use engine::pairs::Vectors;
+use output::plot::Sheet;
+use output::table::Table;
+use runs::store::Store;
 
 /// The results of a benchmark.
 #[derive(Debug, Clone, Serialize)]

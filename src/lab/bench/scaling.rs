@@ -7,15 +7,15 @@ use super::crowd::Crowd;
 use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::timing::{failed, ms_of, ms_per_frame};
-use crate::analysis::statistics::Range;
-use crate::engine::clock::{Clock, PAPER_TIME_STEP};
-use crate::engine::scene::Integrator;
-use crate::engine::simulation::{Simulation, Stage};
-use crate::lab::error::LabError;
-use crate::lab::gallery::{around, color, medians, single};
-use crate::lab::machine::Resident;
-use crate::output::plot::{Axis, Mark, Sheet};
-use crate::output::table::Table;
+use crate::error::LabError;
+use crate::gallery::{around, color, medians, single};
+use crate::machine::Resident;
+use analysis::statistics::Range;
+use engine::clock::{Clock, PAPER_TIME_STEP};
+use engine::scene::Integrator;
+use engine::simulation::{Simulation, Stage};
+use output::plot::{Axis, Mark, Sheet};
+use output::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "scaling",

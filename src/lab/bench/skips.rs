@@ -13,14 +13,14 @@ use self::work::{Course, Work};
 use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::stages::{Started, begin, busiest};
-use crate::analysis::statistics::Range;
-use crate::engine::forces::near::Wanted;
-use crate::engine::scene::Needs;
-use crate::engine::simulation::{Simulation, Stage};
-use crate::lab::error::LabError;
-use crate::lab::gallery::{color, key, single};
-use crate::output::plot::{Axis, BLACK, GRAY, Mark, Sheet, Style};
-use crate::output::table::Table;
+use crate::error::LabError;
+use crate::gallery::{color, key, single};
+use analysis::statistics::Range;
+use engine::forces::near::Wanted;
+use engine::scene::Needs;
+use engine::simulation::{Simulation, Stage};
+use output::plot::{Axis, BLACK, GRAY, Mark, Sheet, Style};
+use output::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "skips",

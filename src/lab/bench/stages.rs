@@ -13,15 +13,15 @@ use super::office;
 use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::timing::{failed, ms_of, ms_per_frame, warmed};
-use crate::analysis::statistics::Range;
-use crate::engine::clock::PAPER_TIME_STEP;
-use crate::engine::simulation::{Simulation, Stage, StageTimes};
-use crate::lab::error::LabError;
-use crate::lab::gallery::{color, key, single};
-use crate::output::plot::{Axis, BLACK, Mark, Sheet};
-use crate::output::table::Table;
-use crate::scenario::measurements::{Measurement, Metrics};
-use crate::scenario::{Scenario, Setting, built_in, floor_plan};
+use crate::error::LabError;
+use crate::gallery::{color, key, single};
+use analysis::statistics::Range;
+use engine::clock::PAPER_TIME_STEP;
+use engine::simulation::{Simulation, Stage, StageTimes};
+use output::plot::{Axis, BLACK, Mark, Sheet};
+use output::table::Table;
+use scenario::measurements::{Measurement, Metrics};
+use scenario::{Scenario, Setting, built_in, floor_plan};
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "stages",

@@ -7,12 +7,12 @@ use super::crowd::Crowd;
 use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::timing::{alternate, going_on};
-use crate::analysis::statistics::Range;
-use crate::lab::error::LabError;
-use crate::lab::gallery::{color, medians, single};
-use crate::lab::machine::Machine;
-use crate::output::plot::{Axis, GRAY, Mark, Sheet, Style};
-use crate::output::table::Table;
+use crate::error::LabError;
+use crate::gallery::{color, medians, single};
+use crate::machine::Machine;
+use analysis::statistics::Range;
+use output::plot::{Axis, GRAY, Mark, Sheet, Style};
+use output::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "threads",

@@ -4,9 +4,9 @@ use std::time::Instant;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::engine::simulation::{Fault, Simulation, Stage, StageTimes};
-use crate::lab::error::LabError;
-use crate::runs::error::StoreError;
+use crate::error::LabError;
+use engine::simulation::{Fault, Simulation, Stage, StageTimes};
+use runs::error::StoreError;
 
 /// Warm-up frames, which bring a copied crowd into the caches.
 const WARMING: u64 = 5;

@@ -6,15 +6,15 @@ use serde_json::{Value, json};
 
 use super::scene::{Set, Target};
 use super::study::Calibration;
-use crate::analysis::statistics::MeanStd;
-use crate::lab::error::LabError;
-use crate::lab::jobs::each;
-use crate::lab::sweep::{Cell, Gathered, Shard, State, Study};
-use crate::runs::case::Case;
-use crate::runs::job::{self, Listener};
-use crate::runs::memory::Memory;
-use crate::runs::store::Store;
-use crate::scenario::Setting;
+use crate::error::LabError;
+use crate::jobs::each;
+use crate::sweep::{Cell, Gathered, Shard, State, Study};
+use analysis::statistics::MeanStd;
+use runs::case::Case;
+use runs::job::{self, Listener};
+use runs::memory::Memory;
+use runs::store::Store;
+use scenario::Setting;
 
 /// Computes points.
 pub struct Evaluator<'a> {

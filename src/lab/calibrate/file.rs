@@ -4,7 +4,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::{Deserialize, Deserializer};
 use serde_untagged::UntaggedEnumVisitor;
 
-use crate::lab::sweep::{Entries, Seeds};
+use crate::sweep::{Entries, Seeds};
 
 /// The whole file.
 #[derive(Debug, Deserialize)]

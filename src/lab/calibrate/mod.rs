@@ -1,9 +1,9 @@
 //! Calibration: parameters for which runs come close to measured values.
 //!
 //! A [`Calibration`] is one file: parameters with bounds, scenes with measured values and tolerances, seeds. [`run`]
-//! computes the starting point, a screening ([`morris`](crate::analysis::morris)), the generations of a search
-//! ([`cma_es`](crate::analysis::cma_es)), slopes around the best point
-//! ([`identifiability`](crate::analysis::identifiability)), and the errors of the fitted values and of the held-out
+//! computes the starting point, a screening ([`morris`](analysis::morris)), the generations of a search
+//! ([`cma_es`](analysis::cma_es)), slopes around the best point
+//! ([`identifiability`](analysis::identifiability)), and the errors of the fitted values and of the held-out
 //! values. The points of each stage are the cells of a sweep; finished cells are kept in the store, and everything else
 //! is computed from them. An interrupted calibration therefore continues from its finished cells, any number of
 //! processes can share one folder, and the results are identical to the last byte after any number of interruptions.
@@ -27,11 +27,11 @@ pub use scene::{Scene, Set, Target};
 pub use search::{Found, Stage};
 pub use study::{Calibration, MOST_GENERATIONS};
 
-use crate::lab::error::LabError;
-use crate::lab::gallery;
-use crate::lab::sweep::Shard;
-use crate::runs::job::Listener;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::gallery;
+use crate::sweep::Shard;
+use runs::job::Listener;
+use runs::store::Store;
 
 /// Computes all stages and writes the results into the store's folder. `shard` is the part of each stage's cells that
 /// this process computes first; then it computes those that no other process has claimed, and waits for the others.

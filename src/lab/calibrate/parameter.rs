@@ -3,10 +3,9 @@
 use serde_json::{Value, json};
 
 use super::file::{ParameterKeys, Scale};
-use super::study::check_text;
-use crate::lab::error::LabError;
-use crate::scenario::quote::shown;
-use crate::scenario::{Problem, Setting};
+use crate::error::LabError;
+use scenario::quote::shown;
+use scenario::{Problem, Setting};
 
 /// A parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -133,4 +132,15 @@ pub(super) fn places(key: &str, document: &Value) -> Vec<String> {
         places(&segments.join("."), document)
     };
     (0..count).flat_map(element).collect()
+}
+
+/// Whether the name is short and printable.
+pub(super) fn check_text(name: &str, place: &str) -> Result<(), Problem> {
+    match !name.is_empty() && shown(name) == name {
+        true => Ok(()),
+        false => {
+            let reason = "must have 1 to 80 characters, and no control characters";
+            Err(Problem::new(place, reason))
+        }
+    }
 }

@@ -3,10 +3,10 @@
 use super::report::{Report, ValueResult};
 use super::scene::{Set, Target};
 use super::search::{Generation, Screened};
-use crate::analysis::morris::Effect;
-use crate::lab::gallery::{self, in_cell, positive};
-use crate::output::colors::{ColorMap, Rgb};
-use crate::output::plot::{Axis, ColorBar, Corner, GRAY, LINES, Mark, Panel, Sheet, Style};
+use crate::gallery::{self, in_cell, positive};
+use analysis::morris::Effect;
+use output::colors::{ColorMap, Rgb};
+use output::plot::{Axis, ColorBar, Corner, GRAY, LINES, Mark, Panel, Sheet, Style};
 
 /// Height of a row with a value, points.
 const ROW: f64 = 15.0;

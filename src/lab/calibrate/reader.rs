@@ -3,16 +3,16 @@
 use std::cell::OnceCell;
 
 use super::file::{SceneKeys, ValueKeys};
+use super::parameter::check_text;
 use super::parameter::places;
 use super::scene::{Scene, Set, Target};
-use super::study::check_text;
-use crate::lab::suite::{Check, Expected, Suite};
-use crate::lab::sweep::{Changes, Entries, Study, Written, source};
-use crate::runs::case::Case;
-use crate::runs::memory::Memory;
-use crate::scenario::measurements::Measurement;
-use crate::scenario::quote::shown;
-use crate::scenario::{Problem, Setting, suggestion};
+use crate::suite::{Check, Expected, Suite};
+use crate::sweep::{Changes, Entries, Study, Written, source};
+use runs::case::Case;
+use runs::memory::Memory;
+use scenario::measurements::Measurement;
+use scenario::quote::shown;
+use scenario::{Problem, Setting, suggestion};
 
 /// The suite whose cases can be scenes.
 const VALIDATION: &str = "validation";

@@ -8,9 +8,9 @@ use super::residual::{noise, residual, root_mean_square};
 use super::scene::{Set, Target};
 use super::search::{Found, Stage, Trial};
 use super::study::Calibration;
-use crate::lab::error::LabError;
-use crate::runs::identity::ENGINE;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use runs::identity::ENGINE;
+use runs::store::Store;
 
 /// A parameter is not identified if its interval covers more than this fraction of its bounds.
 const MOST: f64 = 0.5;

@@ -3,7 +3,7 @@
 use super::evaluate::{Evaluated, Sample};
 use super::file::Rule;
 use super::scene::Target;
-use crate::lab::suite::in_tolerances;
+use crate::suite::in_tolerances;
 
 /// The ratio of a value to the measured one in tolerances.
 pub fn ratio(value: f64, target: &Target) -> f64 {

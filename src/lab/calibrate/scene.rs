@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::file::Rule;
-use crate::lab::suite::Check;
-use crate::runs::case::{Case, RunResult};
+use crate::suite::Check;
+use runs::case::{Case, RunResult};
 
 /// The measurement of people who pass through walls.
 const THROUGH_WALLS: &str = "agents_through_walls";

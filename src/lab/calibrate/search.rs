@@ -3,11 +3,11 @@
 use super::evaluate::{Evaluated, Evaluator};
 use super::residual::{noise, ratio, residual};
 use super::scene::{Set, Target};
-use crate::analysis::cma_es::{CmaEs, reflected};
-use crate::analysis::identifiability::{Knowledge, Slopes};
-use crate::analysis::morris::{Effect, Trajectories};
-use crate::analysis::statistics::{MeanStd, Range};
-use crate::lab::error::LabError;
+use crate::error::LabError;
+use analysis::cma_es::{CmaEs, reflected};
+use analysis::identifiability::{Knowledge, Slopes};
+use analysis::morris::{Effect, Trajectories};
+use analysis::statistics::{MeanStd, Range};
 
 /// The distance from the best point at which slopes are measured, as a fraction of the bounds.
 pub const SLOPE_STEP: f64 = 0.1;

@@ -9,11 +9,11 @@ use super::file::{File, Rule, SceneKeys, Screening, Search};
 use super::parameter::Parameter;
 use super::reader::{Reader, Validation};
 use super::scene::{Scene, Set, Target};
-use crate::analysis::cma_es::{CmaEs, LEAST_POPULATION};
-use crate::lab::sweep::{Seeds, Written, check_name};
-use crate::runs::memory::Memory;
-use crate::scenario::quote::shown;
-use crate::scenario::{Problem, ScenarioError, Setting};
+use crate::sweep::{Seeds, Written, check_name};
+use analysis::cma_es::{CmaEs, LEAST_POPULATION};
+use runs::memory::Memory;
+use scenario::quote::shown;
+use scenario::{Problem, ScenarioError, Setting};
 
 /// Most parameters.
 const MOST_PARAMETERS: usize = 50;
@@ -293,15 +293,4 @@ fn check_numbers(keys: &File) -> Result<(), Problem> {
         }
     }
     Ok(())
-}
-
-/// Whether the name is short and printable.
-pub(super) fn check_text(name: &str, place: &str) -> Result<(), Problem> {
-    match !name.is_empty() && shown(name) == name {
-        true => Ok(()),
-        false => {
-            let reason = "must have 1 to 80 characters, and no control characters";
-            Err(Problem::new(place, reason))
-        }
-    }
 }

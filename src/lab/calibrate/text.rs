@@ -4,8 +4,8 @@ use super::report::{Errors, ParameterResult, Report, ValueResult};
 use super::residual::residual;
 use super::scene::Set;
 use super::search::Stage;
-use crate::lab::error::LabError;
-use crate::output::table::Table;
+use crate::error::LabError;
+use output::table::Table;
 
 /// Correlations above this are named in the text.
 const CORRELATED: f64 = 0.7;

@@ -6,7 +6,7 @@ mod tracks;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::output::table::Table;
+use output::table::Table;
 
 pub use reports::{NotAReport, of_reports};
 pub use tracks::of_tracks;

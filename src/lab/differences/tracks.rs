@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde_json::{Map, Value, json};
 
 use super::{Difference, Differences};
-use crate::engine::math::Vector;
-use crate::lab::measure::speed;
-use crate::scenario::trajectories::Tracks;
+use crate::measure::speed;
+use engine::math::Vector;
+use scenario::trajectories::Tracks;
 
 /// Two positions of a person at the same time differ if they are farther apart than this, meters.
 const DIFFER: f64 = 1e-9;

@@ -10,11 +10,11 @@ use super::run::Runs;
 use super::series::Reached;
 use super::validated::Validated;
 use super::wanted::Wanted;
-use crate::analysis::statistics::{MeanStd, Share};
-use crate::engine::clock::PAPER_TIME_STEP;
-use crate::runs::drive::End;
-use crate::runs::identity::ENGINE;
-use crate::scenario::Preset;
+use analysis::statistics::{MeanStd, Share};
+use engine::clock::PAPER_TIME_STEP;
+use runs::drive::End;
+use runs::identity::ENGINE;
+use scenario::Preset;
 
 /// What ± means, in one sentence for all reports.
 pub const ABOUT: &str = "± is the error from chance (seeds) and from the time step. It is not the error of the model: \

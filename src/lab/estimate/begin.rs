@@ -4,8 +4,8 @@ use super::plan::{Hope, first_round, pilot};
 use super::prior::{Known, Prior};
 use super::run::Runs;
 use super::wanted::Wanted;
-use crate::analysis::round;
-use crate::runs::job::Listener;
+use analysis::round;
+use runs::job::Listener;
 
 impl Runs<'_> {
     /// The wanted results before their first runs.

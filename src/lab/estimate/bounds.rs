@@ -4,13 +4,13 @@ use serde::Serialize;
 
 use super::run::{Runs, StepRuns};
 use super::wanted::{Bound, IMO_RUNS, Sampling};
-use crate::analysis::round;
-use crate::analysis::statistics::probability_above;
-use crate::lab::error::LabError;
-use crate::lab::sweep::number;
-use crate::runs::case::RunResult;
-use crate::runs::job::Listener;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::sweep::number;
+use analysis::round;
+use analysis::statistics::probability_above;
+use runs::case::RunResult;
+use runs::job::Listener;
+use runs::store::Store;
 
 /// IMO's number of runs of each population, where these differ.
 const REPETITIONS: usize = 5;

@@ -5,9 +5,9 @@ use serde_json::{Value, json};
 
 use super::prior::Prior;
 use super::series::{Reached, Series};
-use crate::lab::error::LabError;
-use crate::lab::jobs::read;
-use crate::output::table::{Table, as_precise};
+use crate::error::LabError;
+use crate::jobs::read;
+use output::table::{Table, as_precise};
 
 /// What is read of an answer.
 #[derive(Deserialize)]

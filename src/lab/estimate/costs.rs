@@ -6,14 +6,14 @@ use serde_json::json;
 use super::limit::Limit;
 use super::question::Question;
 use super::series::{Means, Reached};
-use crate::lab::error::LabError;
-use crate::lab::jobs::{finished, read};
-use crate::lab::sweep::plain;
-use crate::runs::case::{Case, RunResult};
-use crate::runs::error::RunError;
-use crate::runs::job::{self, Job, Listener};
-use crate::runs::store::Store;
-use crate::scenario::Preset;
+use crate::error::LabError;
+use crate::jobs::{finished, read};
+use crate::sweep::plain;
+use runs::case::{Case, RunResult};
+use runs::error::RunError;
+use runs::job::{self, Job, Listener};
+use runs::store::Store;
+use scenario::Preset;
 
 /// The number of runs of each preset that are timed.
 const TIMED: usize = 3;

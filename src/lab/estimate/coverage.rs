@@ -13,13 +13,13 @@ use super::question::{Question, QuestionError};
 use super::run::Runs;
 use super::series::{Means, Series};
 use super::wanted::{Limits, Request, Sampling, Wanted};
-use crate::analysis::statistics::{MeanStd, shuffled};
-use crate::lab::error::LabError;
-use crate::lab::jobs::each;
-use crate::runs::case::Source;
-use crate::runs::job::Listener;
-use crate::runs::store::Store;
-use crate::scenario::Setting;
+use crate::error::LabError;
+use crate::jobs::each;
+use analysis::statistics::{MeanStd, shuffled};
+use runs::case::Source;
+use runs::job::Listener;
+use runs::store::Store;
+use scenario::Setting;
 
 /// The probability that intervals are made for.
 pub(super) const CONFIDENCE: f64 = 0.95;

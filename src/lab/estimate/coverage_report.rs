@@ -3,10 +3,10 @@
 use serde_json::{Value, json};
 
 use super::coverage::{CONFIDENCE, Coverage, Covered};
-use crate::analysis::statistics::{Range, Share};
-use crate::lab::error::LabError;
-use crate::output::table::Table;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use analysis::statistics::{Range, Share};
+use output::table::Table;
+use runs::store::Store;
 
 impl Coverage {
     /// The number of intervals that hold the value, of all.

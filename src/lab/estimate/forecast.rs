@@ -11,11 +11,11 @@ use super::question::Question;
 use super::run::Runs;
 use super::series::{Reached, Series};
 use super::wanted::{Request, Tolerance, Wanted};
-use crate::analysis::round;
-use crate::lab::error::LabError;
-use crate::lab::sweep::number;
-use crate::runs::case::RunResult;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::sweep::number;
+use analysis::round;
+use runs::case::RunResult;
+use runs::store::Store;
 
 /// What an estimate is expected to need.
 #[derive(Debug, Clone, PartialEq, Serialize)]

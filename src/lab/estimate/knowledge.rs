@@ -4,11 +4,11 @@ use serde_json::{Value, json};
 
 use super::coverage::{Pool, pooled, question};
 use super::prior::{Known, Prior};
-use crate::analysis::round;
-use crate::lab::error::LabError;
-use crate::output::table::Table;
-use crate::runs::job::Listener;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use analysis::round;
+use output::table::Table;
+use runs::job::Listener;
+use runs::store::Store;
 
 /// The profiles.
 const PROFILES: [&str; 9] = [

@@ -21,7 +21,7 @@
 use std::f64::consts::TAU;
 
 /// h₁, seconds.
-pub(super) const REFERENCE_STEP: f64 = crate::engine::clock::PAPER_TIME_STEP;
+pub(super) const REFERENCE_STEP: f64 = engine::clock::PAPER_TIME_STEP;
 /// The orders p, and their weights.
 const ORDERS: [(f64, f64); 9] = [
     (0.4, 0.04),

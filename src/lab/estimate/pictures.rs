@@ -4,15 +4,13 @@ use super::answer::{Answer, AtStep, Row};
 use super::bounds::Bounded;
 use super::costs::name;
 use super::run::Runs;
-use crate::analysis::round;
-use crate::lab::curves::{BAND, Curve, curves, panel};
-use crate::lab::gallery::{around, band, curve, spanned};
-use crate::output::colors::{Rgb, light};
-use crate::output::plot::{
-    Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style, line_color,
-};
-use crate::runs::case::RunResult;
-use crate::scenario::Preset;
+use crate::curves::{BAND, Curve, curves, panel};
+use crate::gallery::{around, band, curve, spanned};
+use analysis::round;
+use output::colors::{Rgb, light};
+use output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style, line_color};
+use runs::case::RunResult;
+use scenario::Preset;
 
 /// The color of a confidence band, as a part of its line's.
 const LIGHT: f64 = 0.25;

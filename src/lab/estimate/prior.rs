@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use super::limit::{REFERENCE_STEP, SIZES};
 use super::series::Means;
-use crate::analysis::statistics::MeanStd;
-use crate::scenario::input::embedded;
+use analysis::statistics::MeanStd;
+use scenario::input::embedded;
 
 /// General shares of the sizes of errors.
 const GENERAL: [f64; SIZES.len()] = [0.25, 0.35, 0.2, 0.13, 0.07];

@@ -1,19 +1,25 @@
 //! A scenario whose results are estimated, and the time steps on offer.
 
+use std::mem::{Discriminant, discriminant};
+
 use serde_json::{Value, json};
 
-use super::validated::{Kind, kind_of};
 use super::wanted::Request;
-use crate::analysis::{round, stability};
-use crate::engine::clock::SHORTEST_TIME_STEP;
-use crate::lab::gallery::distinct;
-use crate::runs::case::{Case, Source};
-use crate::runs::drive::Run;
-use crate::runs::error::RunError;
-use crate::runs::memory::Memory;
-use crate::runs::summary::Summary;
-use crate::scenario::quote::shown;
-use crate::scenario::{Preset, Scenario, Setting, suggestion};
+use crate::gallery::distinct;
+use analysis::round;
+use engine::clock::SHORTEST_TIME_STEP;
+use engine::stability;
+use runs::case::{Case, Source};
+use runs::drive::Run;
+use runs::error::RunError;
+use runs::memory::Memory;
+use runs::summary::Summary;
+use scenario::measurements::Measurement;
+use scenario::quote::shown;
+use scenario::{Preset, Scenario, Setting, suggestion};
+
+/// The kind of a measurement.
+pub(super) type Kind = Discriminant<Measurement>;
 
 /// How often the first step may be halved.
 const HALVINGS: u32 = 6;
@@ -298,4 +304,10 @@ fn rungs(scenario: &Scenario) -> (Vec<Rung>, usize) {
         rungs.push(twice);
     }
     (rungs, start)
+}
+
+/// The kind of the measurement that has a value of this name.
+pub(super) fn kind_of(measured: &[Measurement], name: &str) -> Option<Kind> {
+    let has_value = |one: &&Measurement| one.names().iter().any(|own| own == name);
+    measured.iter().find(has_value).map(discriminant)
 }

@@ -3,9 +3,9 @@
 use super::answer::{ABOUT, Answer, Row};
 use super::bounds::Bounded;
 use super::costs::name;
-use crate::analysis::round;
-use crate::lab::error::LabError;
-use crate::output::table::{Columns, Table, as_precise};
+use crate::error::LabError;
+use analysis::round;
+use output::table::{Columns, Table, as_precise};
 
 /// A row at one of its steps.
 type Step<'a> = (&'a Row, &'a super::answer::AtStep);

@@ -4,10 +4,10 @@ use super::Answer;
 use super::costs::name;
 use super::pictures::color;
 use super::rows::Answers;
-use crate::lab::gallery::{around, spanned, with_legend};
-use crate::lab::sweep::{Cell, plain};
-use crate::output::plot::{Axis, BLACK, Corner, Mark, Panel, Point, Sheet, Style, line_color};
-use crate::scenario::Preset;
+use crate::gallery::{around, spanned, with_legend};
+use crate::sweep::{Cell, plain};
+use output::plot::{Axis, BLACK, Corner, Mark, Panel, Point, Sheet, Style, line_color};
+use scenario::Preset;
 
 /// The most panels in a row.
 const COLUMNS: usize = 3;

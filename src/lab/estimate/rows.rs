@@ -11,15 +11,15 @@ use super::costs;
 use super::question::{Question, QuestionError};
 use super::run::run;
 use super::wanted::Request;
-use crate::analysis::round;
-use crate::analysis::statistics::{MeanStd, Range};
-use crate::lab::error::LabError;
-use crate::lab::sweep::{Cell, Study, plain};
-use crate::output::plot::Print;
-use crate::output::table::{Columns, Table};
-use crate::runs::identity::ENGINE;
-use crate::runs::job::Listener;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::sweep::{Cell, Study, plain};
+use analysis::round;
+use analysis::statistics::{MeanStd, Range};
+use output::plot::Print;
+use output::table::{Columns, Table};
+use runs::identity::ENGINE;
+use runs::job::Listener;
+use runs::store::Store;
 
 /// The questions of a study: one for each combination of its settings.
 pub struct Questions<'a> {

@@ -10,15 +10,15 @@ use super::plan::{Goal, Offer, further};
 use super::prior::{Known, Prior};
 use super::question::{Question, Rung};
 use super::series::{Means, Reached, Series};
-use crate::lab::error::LabError;
-use crate::lab::jobs::each;
-use crate::lab::sweep::number;
-use crate::output::table::as_precise;
-use crate::runs::case::{Case, RunResult};
-use crate::runs::drive::End;
-use crate::runs::error::RunError;
-use crate::runs::job::{self, Job, Listener};
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::jobs::each;
+use crate::sweep::number;
+use output::table::as_precise;
+use runs::case::{Case, RunResult};
+use runs::drive::End;
+use runs::error::RunError;
+use runs::job::{self, Job, Listener};
+use runs::store::Store;
 
 /// The runs at one time step, in the order of their seeds.
 #[derive(Debug, Clone)]

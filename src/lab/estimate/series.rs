@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::limit::{Level, Limit};
 use super::prior::Prior;
 use super::wanted::Tolerance;
-use crate::analysis::round;
-use crate::analysis::statistics::{MeanStd, student};
+use analysis::round;
+use analysis::statistics::{MeanStd, student};
 
 /// The values of one measurement at each step, from the finest to the coarsest, in the order of the seeds.
 #[derive(Debug, Clone, PartialEq)]

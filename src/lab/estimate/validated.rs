@@ -1,18 +1,13 @@
 //! What is known of the error of the model: the scenes of the built-in validation that have the same measurements.
 
-use std::mem::{Discriminant, discriminant};
-
 use serde::Serialize;
 
-use super::question::Question;
-use crate::lab::error::LabError;
-use crate::lab::suite::{Case, Suite};
-use crate::lab::sweep::{Cell, Changes};
-use crate::scenario::measurements::Measurement;
-use crate::scenario::{ScenarioError, catalog};
-
-/// The kind of a measurement.
-pub(super) type Kind = Discriminant<Measurement>;
+use super::question::{Kind, Question, kind_of};
+use crate::error::LabError;
+use crate::suite::{Case, Suite};
+use crate::sweep::{Cell, Changes};
+use scenario::measurements::Measurement;
+use scenario::{ScenarioError, catalog};
 
 /// Results of an estimate, and the scenes of the validation with the same kind of measurement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -127,12 +122,6 @@ impl Validated {
         };
         text + "\n"
     }
-}
-
-/// The kind of the measurement that has a value of this name.
-pub(super) fn kind_of(measured: &[Measurement], name: &str) -> Option<Kind> {
-    let has_value = |one: &&Measurement| one.names().iter().any(|own| own == name);
-    measured.iter().find(has_value).map(discriminant)
 }
 
 fn invalid(error: ScenarioError) -> LabError {

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::analysis::round;
-use crate::analysis::statistics::draws_above;
-use crate::scenario::quote::shown;
+use analysis::round;
+use analysis::statistics::draws_above;
+use scenario::quote::shown;
 
 /// A result, and the error that it may have.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,12 +1,12 @@
 //! The density of people in a frame (§8): Eqs. 9 and 10 without a simulation.
 
-use super::moment::Person;
 use super::options::{Behind, Options};
-use crate::analysis::site::{Hidden, Kernel, Site};
-use crate::analysis::surroundings::{MOST_HIDDEN, Surroundings};
-use crate::engine::density::SphParameters;
-use crate::engine::kernel;
-use crate::engine::math::Vector;
+use super::person::Person;
+use analysis::site::{Hidden, Kernel, Site};
+use analysis::surroundings::{MOST_HIDDEN, Surroundings};
+use engine::density::SphParameters;
+use engine::kernel;
+use engine::math::Vector;
 
 /// The terms of Eq. 9.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::Moment;
-use crate::analysis::statistics::MeanStd;
-use crate::engine::scene::Region;
+use analysis::statistics::MeanStd;
+use engine::scene::Region;
 
 /// Width of a density class, P/m².
 pub const CLASS: f64 = 0.5;

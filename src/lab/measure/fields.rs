@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::moment::Person;
 use super::options::MOST_CELLS;
-use crate::analysis::site::{Kernel, Site};
-use crate::analysis::surroundings::MOST_HIDDEN;
-use crate::analysis::way_field::Grid;
-use crate::engine::kernel;
-use crate::engine::math::Vector;
+use super::person::Person;
+use super::view::View;
+use analysis::site::{Kernel, Site};
+use analysis::way_field::Grid;
+use engine::kernel;
+use engine::math::Vector;
 
 /// Rows of cells per parallel task.
 const BAND: usize = 8;
@@ -61,40 +61,6 @@ pub struct Fields {
     kernel: Kernel,
     sums: Vec<Sums>,
     views: Vec<Option<View>>,
-}
-
-/// The visibility from a point outside obstacles.
-#[derive(Debug, Clone, Default)]
-pub struct View {
-    /// The share of the kernel that walls hide.
-    hidden: f64,
-    /// The walls within reach.
-    near: Box<[u32]>,
-}
-
-impl View {
-    /// The visibility from `p`; `None` inside obstacles.
-    pub fn new(site: &Site, kernel: &Kernel, p: Vector) -> Option<Self> {
-        if site.is_inside(p) {
-            return None;
-        }
-        let mut near = Vec::new();
-        site.walls.near(p, kernel.support_radius, &mut near);
-        Some(Self {
-            hidden: kernel.share(&site.walls, p, &near),
-            near: near.into_boxed_slice(),
-        })
-    }
-
-    /// The share of the kernel that is visible.
-    pub fn visible(&self) -> f64 {
-        1.0 - self.hidden.min(MOST_HIDDEN)
-    }
-
-    /// Whether `eye` is visible from the point `p` of this view.
-    pub fn sees(&self, site: &Site, p: Vector, eye: Vector) -> bool {
-        self.near.is_empty() || site.sees(p, eye, &self.near)
-    }
 }
 
 impl Fields {

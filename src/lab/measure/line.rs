@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::{MeasureError, Options};
-use crate::analysis::crossing::{Balance, FlowBetween, Line, Passages};
-use crate::analysis::site::Site;
-use crate::scenario::floor_plan::is_line_on_floor;
-use crate::scenario::trajectories::Tracks;
+use analysis::crossing::{Balance, FlowBetween, Line, Passages};
+use analysis::site::Site;
+use scenario::floor_plan::is_line_on_floor;
+use scenario::trajectories::Tracks;
 
 /// A person crosses a line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -8,17 +8,18 @@ use super::density::{History, Parts, parts};
 use super::diagram::Diagram;
 use super::fields::{Fields, cells_over};
 use super::line::{self, Crossings};
-use super::moment::{Moment, Person};
+use super::moment::Moment;
 use super::options::{MeasureError, Options};
+use super::person::Person;
 use super::regions::{RegionState, Regions};
 use super::safety::{Departures, Safety};
 use super::speed;
-use crate::analysis::site::Site;
-use crate::analysis::statistics::MeanStd;
-use crate::analysis::surroundings::MOST_HIDDEN;
-use crate::analysis::way_field::Grid;
-use crate::engine::math::{Vector, bounds};
-use crate::scenario::trajectories::Tracks;
+use analysis::site::Site;
+use analysis::statistics::MeanStd;
+use analysis::surroundings::MOST_HIDDEN;
+use analysis::way_field::Grid;
+use engine::math::{Vector, bounds};
+use scenario::trajectories::Tracks;
 
 /// Rows measured at a time, unless a single frame has more.
 const BATCH: usize = 1 << 16;

@@ -1,8 +1,8 @@
 //! The options of a measurement, and why one is impossible.
 
-use crate::analysis::crossing::{Line, Passages};
-use crate::analysis::site::Kernel;
-use crate::engine::scene::Region;
+use analysis::crossing::{Line, Passages};
+use analysis::site::Kernel;
+use engine::scene::Region;
 
 /// Maximum number of cells of mean fields.
 pub const MOST_CELLS: usize = 4_000_000;

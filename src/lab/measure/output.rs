@@ -8,16 +8,16 @@ use super::pictures::STEMS;
 use super::record::RECORDING;
 use super::report::regions_table;
 use super::{CLASS, Class, Classes, Density, Measured, Moment, Safety};
-use crate::analysis::exposure::PersonExposure;
-use crate::analysis::statistics::MeanStd;
-use crate::engine::math::Vector;
-use crate::lab::error::LabError;
-use crate::output::plot::Print;
-use crate::output::table::{Cell, Table, csv_lines};
-use crate::runs::error::StoreError;
-use crate::runs::outputs::Replacement;
-use crate::runs::store::Store;
-use crate::scenario::trajectories::Tracks;
+use crate::error::LabError;
+use analysis::exposure::PersonExposure;
+use analysis::statistics::MeanStd;
+use engine::math::Vector;
+use output::plot::Print;
+use output::table::{Cell, Table, csv_lines};
+use runs::error::StoreError;
+use runs::outputs::Replacement;
+use runs::store::Store;
+use scenario::trajectories::Tracks;
 
 /// All people, frame by frame.
 const AGENTS: &str = "agents.csv";

@@ -2,14 +2,14 @@
 
 use super::safety_report::is_packed;
 use super::{Class, Crossings, Density, Diagram, FrameMean, Mean, Measured, Safety, Sample, Site};
-use crate::analysis::crowd_pressure::BEFORE_ACCIDENT;
-use crate::analysis::exposure::DENSITIES;
-use crate::analysis::statistics::MeanStd;
-use crate::engine::geometry::Walls;
-use crate::engine::math::{Vector, bounds};
-use crate::lab::gallery::thinned;
-use crate::output::colors::{ColorMap, DENSITY, SPEED, light};
-use crate::output::plot::{
+use crate::gallery::thinned;
+use analysis::crowd_pressure::BEFORE_ACCIDENT;
+use analysis::exposure::DENSITIES;
+use analysis::statistics::MeanStd;
+use engine::geometry::Walls;
+use engine::math::{Vector, bounds};
+use output::colors::{ColorMap, DENSITY, SPEED, light};
+use output::plot::{
     Axis, BLACK, Cells, ColorBar, Corner, GRAY, LINES, Mark, Panel, Point, Sheet, Style, line_color,
 };
 

@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use super::{Behind, Moment, Options, Site};
-use crate::analysis::crossing::Line;
-use crate::engine::agents::REFERENCE_RADIUS;
-use crate::engine::geometry::Walls;
-use crate::engine::math::{Vector, bounds};
-use crate::engine::scene::Region;
-use crate::output::recording::{
+use analysis::crossing::Line;
+use engine::agents::REFERENCE_RADIUS;
+use engine::geometry::Walls;
+use engine::math::{Vector, bounds};
+use engine::scene::Region;
+use output::recording::{
     DebugAgents, Marked, MeasuredPerson, MeasuredRecorder, RecordingError, RecordingOptions,
 };
-use crate::runs::identity::Identity;
-use crate::scenario::trajectories::Tracks;
+use runs::identity::Identity;
+use scenario::trajectories::Tracks;
 
 /// With ids larger than this, the recording uses the people's numbers instead.
 const LARGEST_ID: i64 = 1 << 22;

@@ -4,14 +4,14 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::fields::View;
-use super::moment::Person;
 use super::options::{MOST_CELLS, MeasureError, Options};
+use super::person::Person;
 use super::tessellation::{OwnCell, Tessellation};
-use crate::analysis::site::{Kernel, Site};
-use crate::engine::kernel;
-use crate::engine::math::Vector;
-use crate::engine::scene::Region;
+use super::view::View;
+use analysis::site::{Kernel, Site};
+use engine::kernel;
+use engine::math::Vector;
+use engine::scene::Region;
 
 /// The densities of a region in a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]

@@ -7,11 +7,11 @@ use serde_json::{Map, Value, json};
 use super::{
     CLASS, Class, Classes, Crossings, Density, Diagram, Measured, Options, Way, safety_report,
 };
-use crate::analysis::crossing::Passages;
-use crate::analysis::statistics::MeanStd;
-use crate::engine::scene::Region;
-use crate::output::table::{Cell, Table};
-use crate::scenario::trajectories::Tracks;
+use analysis::crossing::Passages;
+use analysis::statistics::MeanStd;
+use engine::scene::Region;
+use output::table::{Cell, Table};
+use scenario::trajectories::Tracks;
 
 /// The summary of a measurement.
 pub struct Report<'a> {

@@ -5,12 +5,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::Moment;
-use crate::analysis::crowd_pressure::Pressures;
-use crate::analysis::exposure::Exposure;
-use crate::analysis::local::{Local, People};
-use crate::analysis::service::Levels;
-use crate::analysis::site::Site;
-use crate::scenario::trajectories::Tracks;
+use analysis::crowd_pressure::Pressures;
+use analysis::exposure::Exposure;
+use analysis::local::{Local, People};
+use analysis::service::Levels;
+use analysis::site::Site;
+use scenario::trajectories::Tracks;
 
 /// The observations of people in samples of time.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,10 +3,10 @@
 use serde_json::{Value, json};
 
 use super::{Departures, Measured, Safety};
-use crate::analysis::crowd_pressure::BEFORE_ACCIDENT;
-use crate::analysis::exposure::{Alarm, DENSITIES, Exposed, SLOW};
-use crate::analysis::service::LEVELS;
-use crate::output::table::Table;
+use analysis::crowd_pressure::BEFORE_ACCIDENT;
+use analysis::exposure::{Alarm, DENSITIES, Exposed, SLOW};
+use analysis::service::LEVELS;
+use output::table::Table;
 
 /// As text for a terminal.
 pub fn text(measured: &Measured) -> String {

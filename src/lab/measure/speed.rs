@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use crate::engine::math::Vector;
-use crate::scenario::trajectories::Tracks;
+use engine::math::Vector;
+use scenario::trajectories::Tracks;
 
 /// Default number of recorded frames that a velocity looks back and ahead, common among PedPy's users.
 pub const FRAMES: i64 = 5;

@@ -2,12 +2,12 @@
 //! (`compute_individual_voronoi_polygons`).
 
 use super::options::{CellLimit, MeasureError};
-use crate::analysis::site::Site;
-use crate::analysis::voronoi::{area, cells, disk, within};
-use crate::engine::geometry::{Area, Polygon};
-use crate::engine::math::{Vector, bounds};
-use crate::engine::scene::Region;
-use crate::scenario::floor_plan::{self, Rings};
+use analysis::site::Site;
+use analysis::voronoi::{area, cells, disk, within};
+use engine::geometry::{Area, Polygon};
+use engine::math::{Vector, bounds};
+use engine::scene::Region;
+use scenario::floor_plan::{self, Rings};
 
 /// Walls this far beyond a polygon are cut together with it, meters.
 const MARGIN: f64 = 0.1;

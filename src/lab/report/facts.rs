@@ -1,9 +1,9 @@
 //! Results with their definitions.
 
-use crate::output::document::Block;
-use crate::output::table::Table;
-use crate::runs::summary::Summary;
-use crate::scenario::measurements::{GAP, HEADWAY, Measurement, Quantity, SLOW, STUCK_AFTER};
+use output::document::Block;
+use output::table::Table;
+use runs::summary::Summary;
+use scenario::measurements::{GAP, HEADWAY, Measurement, Quantity, SLOW, STUCK_AFTER};
 
 /// What readers of all values must know.
 pub const DENSITY: &str = "\

@@ -1,8 +1,8 @@
 //! The assumptions and limits of the model.
 
-use crate::output::document::Block;
-use crate::scenario::calibrated;
-use crate::scenario::quote::shown;
+use output::document::Block;
+use scenario::calibrated;
+use scenario::quote::shown;
 
 /// Assumptions and limits, for these profiles.
 pub fn limits(profiles: &[&str]) -> Vec<Block> {

@@ -1,13 +1,13 @@
 //! Who enters, and who passes the lines of exits, doors and waypoints.
 
-use crate::engine::journeys::{ChangeKind, Kind, Place};
-use crate::engine::math::Vector;
-use crate::engine::scene::Scene;
-use crate::engine::simulation::Simulation;
-use crate::output::document::Block;
-use crate::output::table::Table;
-use crate::scenario::Scenario;
-use crate::scenario::quote::shown;
+use engine::journeys::{ChangeKind, Kind, Place};
+use engine::math::Vector;
+use engine::scene::Scene;
+use engine::simulation::Simulation;
+use output::document::Block;
+use output::table::Table;
+use scenario::Scenario;
+use scenario::quote::shown;
 
 /// Lines are sampled this often, and walls are looked for this far from them, meters.
 const STEP: f64 = 0.01;

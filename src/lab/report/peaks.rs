@@ -1,11 +1,11 @@
 //! The highest density at each place of the floor over a run.
 
 use super::still::bar;
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::output::picture::{Crowd, Field, Picture};
-use crate::output::plot::{Cells, Print, Sheet};
-use crate::scenario::Scenario;
+use engine::math::Vector;
+use engine::simulation::Simulation;
+use output::picture::{Crowd, Field, Picture};
+use output::plot::{Cells, Print, Sheet};
+use scenario::Scenario;
 
 /// The side of a cell, meters, and the most cells along a side of the map: larger floors have larger cells.
 const CELL: f64 = 0.5;

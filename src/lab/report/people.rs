@@ -3,12 +3,12 @@
 use serde_json::Value;
 
 use super::passages::Passages;
-use crate::engine::journeys::{Kind, Place};
-use crate::engine::scene::{Group, Scene};
-use crate::output::document::Block;
-use crate::output::table::Table;
-use crate::scenario::Scenario;
-use crate::scenario::quote::shown;
+use engine::journeys::{Kind, Place};
+use engine::scene::{Group, Scene};
+use output::document::Block;
+use output::table::Table;
+use scenario::Scenario;
+use scenario::quote::shown;
 
 /// The keys whose items are groups with names, in the order of the groups.
 const LISTS: [&str; 4] = ["grids", "crowds", "sources", "entrances"];
@@ -104,7 +104,7 @@ fn items(document: &Value) -> Vec<(String, &Value)> {
 fn own_values(
     scene: &Scene,
     k: usize,
-    value: impl Fn(&crate::engine::agents::NewAgent) -> Option<f64>,
+    value: impl Fn(&engine::agents::NewAgent) -> Option<f64>,
     default: f64,
 ) -> String {
     let own = scene

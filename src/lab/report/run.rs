@@ -6,20 +6,20 @@ use std::path::PathBuf;
 use super::still::Still;
 use super::watched::Watched;
 use super::{facts, limits, people, settings, status};
-use crate::engine::simulation::Simulation;
-use crate::lab::egress::Egress;
-use crate::lab::error::LabError;
-use crate::lab::gallery::distinct;
-use crate::output::document::{Block, Document, print};
-use crate::output::results;
-use crate::output::table::Table;
-use crate::runs::drive::Run;
-use crate::runs::identity::{ENGINE, Identity, sha256};
-use crate::runs::notes;
-use crate::runs::summary::{JourneyResult, PlaceResult, Summary};
-use crate::scenario::Scenario;
-use crate::scenario::measurements::Measurement;
-use crate::scenario::quote::shown;
+use crate::egress::Egress;
+use crate::error::LabError;
+use crate::gallery::distinct;
+use engine::simulation::Simulation;
+use output::document::{Block, Document, print};
+use output::results;
+use output::table::Table;
+use runs::drive::Run;
+use runs::identity::{ENGINE, Identity, sha256};
+use runs::notes;
+use runs::summary::{JourneyResult, PlaceResult, Summary};
+use scenario::Scenario;
+use scenario::measurements::Measurement;
+use scenario::quote::shown;
 
 /// A file that a run reads.
 pub struct InputFile {

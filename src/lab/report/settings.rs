@@ -3,9 +3,9 @@
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::output::document::Block;
-use crate::output::table::Table;
-use crate::scenario::{Preset, Scenario, settings, tidy};
+use output::document::Block;
+use output::table::Table;
+use scenario::{Preset, Scenario, settings, tidy};
 
 /// Keys that the report shows elsewhere.
 const ELSEWHERE: [&str; 3] = ["name", "description", "preset"];
@@ -38,7 +38,7 @@ pub fn changed(scenario: &Scenario, by: &'static str) -> Block {
         });
         keys.any(|changed| changed == key)
     };
-    let row = |doc: crate::scenario::SettingDoc| {
+    let row = |doc: scenario::SettingDoc| {
         let given = |document: &Value| {
             let parameter = document.get("parameters").and_then(|all| all.get(doc.key));
             parameter.or_else(|| document.get(doc.key)).cloned()

@@ -3,11 +3,11 @@
 use serde::de::DeserializeOwned;
 
 use super::held_out::HeldOut;
-use crate::lab::error::LabError;
-use crate::lab::suite::{Passed, Status};
-use crate::output::document::Block;
-use crate::scenario::catalog;
-use crate::scenario::quote::shown;
+use crate::error::LabError;
+use crate::suite::{Passed, Status};
+use output::document::Block;
+use scenario::catalog;
+use scenario::quote::shown;
 
 /// The results in this version: data beside the documents, which `--update` writes for the two suites.
 struct Known {

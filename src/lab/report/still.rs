@@ -1,13 +1,13 @@
 //! What a report keeps of a moment of its run, for a picture.
 
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::output::colors::ColorMap;
-use crate::output::picture::{Coloring, Crowd, Picture};
-use crate::output::plot::{ColorBar, Print, Sheet};
-use crate::output::scenery;
-use crate::scenario::Scenario;
-use crate::scenario::measurements::Observed;
+use engine::math::Vector;
+use engine::simulation::Simulation;
+use output::colors::ColorMap;
+use output::picture::{Coloring, Crowd, Picture};
+use output::plot::{ColorBar, Print, Sheet};
+use output::scenery;
+use scenario::Scenario;
+use scenario::measurements::Observed;
 
 /// The agents at one moment: far less than the state of the run.
 #[derive(Debug, Clone)]

@@ -3,18 +3,18 @@
 use std::collections::BTreeMap;
 
 use super::{facts, limits, settings, status};
-use crate::analysis::statistics::MeanStd;
-use crate::lab::curves::{BAND, Curve, curves, panel};
-use crate::lab::error::LabError;
-use crate::lab::gallery::{color, distinct, with_legend};
-use crate::lab::sweep::{Combination, Drawing, Gathered, State, readable};
-use crate::output::document::{Block, Document};
-use crate::output::plot::Sheet;
-use crate::output::table::Table;
-use crate::runs::case::RunResult;
-use crate::runs::identity::ENGINE;
-use crate::scenario::Scenario;
-use crate::scenario::measurements::Quantity;
+use crate::curves::{BAND, Curve, curves, panel};
+use crate::error::LabError;
+use crate::gallery::{color, distinct, with_legend};
+use crate::sweep::{Combination, Drawing, Gathered, State, readable};
+use analysis::statistics::MeanStd;
+use output::document::{Block, Document};
+use output::plot::Sheet;
+use output::table::Table;
+use runs::case::RunResult;
+use runs::identity::ENGINE;
+use scenario::Scenario;
+use scenario::measurements::Quantity;
 
 /// The most combinations beside each other in a table.
 const BESIDE: usize = 3;
@@ -47,7 +47,7 @@ pub fn of_study(gathered: &Gathered, [command, report]: [&str; 2]) -> Result<Doc
     }
     let first = combinations.iter().filter_map(|one| one.cells.first());
     let scenarios = first.map(|cell| {
-        let invalid = |error: crate::scenario::ScenarioError| LabError::Data(error.to_string());
+        let invalid = |error: scenario::ScenarioError| LabError::Data(error.to_string());
         cell.case.scenario().map_err(invalid)
     });
     let scenarios: Vec<Scenario> = scenarios.collect::<Result<_, _>>()?;

@@ -3,8 +3,8 @@
 use super::passages::Passages;
 use super::peaks::Peaks;
 use super::still::Still;
-use crate::engine::simulation::Simulation;
-use crate::scenario::Scenario;
+use engine::simulation::Simulation;
+use scenario::Scenario;
 
 /// Between the moments that may be the one at which half of the agents had left, this share more must have left.
 const MORE: f64 = 0.05;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::analysis::statistics::MeanStd;
-use crate::output::table::Cell;
+use analysis::statistics::MeanStd;
+use output::table::Cell;
 
 /// The largest allowed distance of a mean from the paper's value, inclusive.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -4,10 +4,10 @@ use super::comparison::Band;
 use super::published::{PublishedRow, published, written};
 use super::row::BANDS_IN_WORDS;
 use super::table1::{value_with_band, varied};
-use crate::lab::error::LabError;
-use crate::lab::estimate::{ABOUT, Answer, Answers, Reached};
-use crate::lab::sweep::Cell;
-use crate::output::table::Table;
+use crate::error::LabError;
+use crate::estimate::{ABOUT, Answer, Answers, Reached};
+use crate::sweep::Cell;
+use output::table::Table;
 
 /// A row of the paper beside ours.
 type Row<'a> = (PublishedRow, &'a Answer);

@@ -2,11 +2,11 @@
 
 use super::product::{Needs, Product};
 use super::{figures, physics, questions, table1, table2};
-use crate::lab::error::LabError;
-use crate::lab::jobs::finished;
-use crate::lab::sweep::{Gathered, Study};
-use crate::runs::job::{self, Listener};
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::jobs::finished;
+use crate::sweep::{Gathered, Study};
+use runs::job::{self, Listener};
+use runs::store::Store;
 
 /// All products, in the paper's order, then open questions.
 pub const PRODUCTS: &[Product] = &[

@@ -1,9 +1,9 @@
 //! Products: tables and figures.
 
-use crate::lab::error::LabError;
-use crate::lab::sweep::{Cell, Gathered, Study};
-use crate::output::plot::Sheet;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::sweep::{Cell, Gathered, Study};
+use output::plot::Sheet;
+use runs::store::Store;
 
 /// A table or a figure.
 pub struct Product {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scenario::input::embedded;
+use scenario::input::embedded;
 
 /// All values, with their source.
 #[derive(Debug, Clone, Deserialize)]

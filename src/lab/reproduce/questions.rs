@@ -5,11 +5,11 @@ use serde_json::json;
 use super::product::{Needs, Product};
 use super::published::published;
 use super::table2::CrossingTable;
-use crate::analysis::statistics::{MeanStd, Range};
-use crate::lab::error::LabError;
-use crate::lab::sweep::{Combination, Gathered};
-use crate::output::table::{Cell, Table};
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::sweep::{Combination, Gathered};
+use analysis::statistics::{MeanStd, Range};
+use output::table::{Cell, Table};
+use runs::store::Store;
 
 /// Answers to all questions.
 pub const PRODUCT: Product = Product {

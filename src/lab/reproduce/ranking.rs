@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::analysis::statistics::MeanStd;
+use analysis::statistics::MeanStd;
 
 /// Rows with a smaller difference in the paper, relative to the lower one, are not ranked.
 pub const LEAST_DIFFERENCE: f64 = 0.1;

@@ -5,10 +5,10 @@ use serde_json::Value;
 
 use super::comparison::{Band, Comparison};
 use super::published::{PublishedRow, Varied, written};
-use crate::lab::error::LabError;
-use crate::lab::sweep::Combination;
-use crate::output::table::{Columns, Table};
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::sweep::Combination;
+use output::table::{Columns, Table};
+use runs::store::Store;
 
 /// The bands of density, its deviation and flow around the paper's values, the same for all rows: where one more run
 /// lies with 95 % beside the mean of ten, t √(1 + 1/10) s. s is the standard deviation over seeds of Table 1, pooled

@@ -6,10 +6,10 @@ use super::comparison::Band;
 use super::product::{Needs, Product};
 use super::published::{PublishedRow, Varied, published};
 use super::row::{self, BANDS, Row, compared, profiles};
-use crate::lab::error::LabError;
-use crate::lab::sweep::{Combination, Gathered};
-use crate::runs::store::Store;
-use crate::scenario::{Scenario, Setting};
+use crate::error::LabError;
+use crate::sweep::{Combination, Gathered};
+use runs::store::Store;
+use scenario::{Scenario, Setting};
 
 /// The table.
 pub const PRODUCT: Product = Product {

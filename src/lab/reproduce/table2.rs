@@ -6,10 +6,10 @@ use super::product::{Needs, Product};
 use super::published::{PublishedRow, published, written};
 use super::ranking::{LEAST_DIFFERENCE, Ranked, Ranking, rankings};
 use super::row::{self, Row, compared, profiles};
-use crate::lab::error::LabError;
-use crate::lab::sweep::{Combination, Gathered};
-use crate::output::table::Table;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::sweep::{Combination, Gathered};
+use output::table::Table;
+use runs::store::Store;
 
 /// The table.
 pub const PRODUCT: Product = Product {

@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use super::condition::Condition;
 use super::rest::{Remains, Rest};
-use crate::analysis::stability::FITTED;
-use crate::engine::clock::PAPER_COARSE_STEP;
-use crate::engine::simulation::Fault;
-use crate::runs::identity::Identity;
-use crate::runs::job::{Job, Progress};
+use engine::clock::PAPER_COARSE_STEP;
+use engine::simulation::Fault;
+use engine::stability::FITTED;
+use runs::identity::Identity;
+use runs::job::{Job, Progress};
 
 /// No time step is longer, seconds: Δt_fine never exceeds Δt_coarse.
 const LONGEST: f64 = PAPER_COARSE_STEP;

@@ -1,7 +1,7 @@
 //! The conditions under which every point of the maps is tested.
 
-use crate::analysis::stability::Scheme;
-use crate::engine::boundary::WallMethod;
+use engine::boundary::WallMethod;
+use engine::stability::Scheme;
 
 /// The wall method, and the integration scheme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

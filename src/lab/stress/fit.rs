@@ -2,7 +2,7 @@
 
 use super::cell::Cell;
 use super::condition::Condition;
-use crate::analysis::stability::{Constants, FITTED, Scheme};
+use engine::stability::{Constants, FITTED, Scheme};
 
 /// The smallest allowed ratio of `auto` to the largest stable step.
 pub const LEAST: f64 = 0.7;

@@ -4,8 +4,8 @@
 use serde::Deserialize;
 
 use super::rest::Rest;
-use crate::lab::error::LabError;
-use crate::lab::gallery::distinct;
+use crate::error::LabError;
+use crate::gallery::distinct;
 
 /// The points of the maps, and how closely their limits are searched for. Values are in increasing order.
 #[derive(Debug, Clone, Deserialize)]

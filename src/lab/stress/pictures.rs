@@ -3,10 +3,10 @@
 use super::cell::Cell;
 use super::map::Detail;
 use super::rest::Rest;
-use crate::analysis::stability::{FITTED, Scheme};
-use crate::lab::gallery;
-use crate::output::colors::ColorMap;
-use crate::output::plot::{Axis, ColorBar, Corner, LINES, Mark, Panel, Sheet, Style};
+use crate::gallery;
+use engine::stability::{FITTED, Scheme};
+use output::colors::ColorMap;
+use output::plot::{Axis, ColorBar, Corner, LINES, Mark, Panel, Sheet, Style};
 
 /// Range of the step axis of all curves, milliseconds.
 const STEPS: [f64; 2] = [2.0, 200.0];

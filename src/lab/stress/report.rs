@@ -5,12 +5,31 @@ use serde::Serialize;
 use super::cell::Cell;
 use super::condition::Condition;
 use super::fit::LEAST;
-use super::suite::Finished;
-use crate::analysis::stability::{Constants, FITTED};
-use crate::analysis::statistics::Range;
-use crate::lab::error::LabError;
-use crate::output::table::Table;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use analysis::statistics::Range;
+use engine::stability::{Constants, FITTED};
+use output::table::Table;
+use runs::case::RunResult;
+use runs::store::Store;
+
+/// A finished run of one of the studies.
+#[derive(Debug, Clone, Serialize)]
+pub struct Finished {
+    /// Its label in the study.
+    pub label: String,
+    /// The description of its scenario, one line.
+    pub description: String,
+    /// Its result.
+    #[serde(flatten)]
+    pub result: RunResult,
+}
+
+impl Finished {
+    /// The value of a measurement; `None` if it has none.
+    pub fn metric(&self, name: &str) -> Option<f64> {
+        self.result.summary.metric(name)
+    }
+}
 
 /// All results.
 #[derive(Debug, Clone, Serialize)]

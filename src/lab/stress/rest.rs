@@ -6,18 +6,18 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::condition::Condition;
-use crate::engine::agents::{Agents, NewAgent};
-use crate::engine::clock::Clock;
-use crate::engine::forces::rates::Rates;
-use crate::engine::geometry::Polygon;
-use crate::engine::math::Vector;
-use crate::engine::period::{Axis, Period};
-use crate::engine::placement::Grid;
-use crate::engine::profile::Blend;
-use crate::engine::scene::{Group, Scene};
-use crate::engine::simulation::{Fault, Simulation};
-use crate::scenario::catalog::{NavigationKind, Parameters, WalkingLawKind};
-use crate::scenario::measurements::{Watched, closest};
+use engine::agents::{Agents, NewAgent};
+use engine::clock::Clock;
+use engine::forces::rates::Rates;
+use engine::geometry::Polygon;
+use engine::math::Vector;
+use engine::period::{Axis, Period};
+use engine::placement::Grid;
+use engine::profile::Blend;
+use engine::scene::{Group, Scene};
+use engine::simulation::{Fault, Simulation};
+use scenario::catalog::{NavigationKind, Parameters, WalkingLawKind};
+use scenario::measurements::{Watched, closest};
 
 /// Agents along each side of the room.
 const COLUMNS: u32 = 10;

@@ -1,41 +1,20 @@
 //! The whole suite.
 
-use serde::Serialize;
 use serde_json::Value;
 
 use super::cell::Cell;
 use super::fit::fit;
 use super::map::Detail;
 use super::pictures;
-use super::report::Report;
-use crate::lab::error::LabError;
-use crate::lab::jobs::{read, results};
-use crate::lab::sweep::{self, Study};
-use crate::runs::case::RunResult;
-use crate::runs::job::Listener;
-use crate::runs::store::Store;
+use super::report::{Finished, Report};
+use crate::error::LabError;
+use crate::jobs::{read, results};
+use crate::sweep::{self, Study};
+use runs::job::Listener;
+use runs::store::Store;
 
 /// Held-out crowds use the seeds after this one, which the maps do not use.
 const OTHER_PEOPLE: u64 = 100;
-
-/// A finished run of one of the studies.
-#[derive(Debug, Clone, Serialize)]
-pub struct Finished {
-    /// Its label in the study.
-    pub label: String,
-    /// The description of its scenario, one line.
-    pub description: String,
-    /// Its result.
-    #[serde(flatten)]
-    pub result: RunResult,
-}
-
-impl Finished {
-    /// The value of a measurement; `None` if it has none.
-    pub fn metric(&self, name: &str) -> Option<f64> {
-        self.result.summary.metric(name)
-    }
-}
 
 /// Computes all results that are not in `store`, and writes tables and pictures.
 ///

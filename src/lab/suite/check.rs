@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::keys::{Case, Check, Expected};
 use super::quantity::Quantity;
-use crate::lab::error::LabError;
-use crate::runs::summary::Summary;
+use crate::error::LabError;
+use runs::summary::Summary;
 
 /// Limits such as 1.6 are not exact in binary.
 const ROUNDING: f64 = 1e-9;

@@ -2,7 +2,7 @@
 
 use super::check::Judgment;
 use super::report::{Finding, Report};
-use crate::output::table::Table;
+use output::table::Table;
 
 /// The values of a kind, by profile.
 struct Line {

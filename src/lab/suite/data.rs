@@ -1,9 +1,9 @@
 //! The measurements in data: in the trajectory files from which runs begin.
 
-use crate::lab::error::LabError;
-use crate::runs::case::Case;
-use crate::runs::summary::Summary;
-use crate::scenario::measurements::Measurement;
+use crate::error::LabError;
+use runs::case::Case;
+use runs::summary::Summary;
+use scenario::measurements::Measurement;
 
 /// The measurements of a scenario's lines and pushes for the people of the data from which it begins, from its start
 /// on. People are measured as in a run, at their positions in its frames.

@@ -2,8 +2,8 @@
 
 use super::counts::is_fitted;
 use super::report::{Finding, Report};
-use crate::lab::gallery::BAND;
-use crate::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
+use crate::gallery::BAND;
+use output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
 
 /// Deviations farther out are drawn at this one, tolerances.
 const FARTHEST: f64 = 8.0;

@@ -2,11 +2,11 @@
 
 use super::check::Runs;
 use super::keys::{Case, Check, Diagram, Expected};
-use crate::lab::curves::{self, Curve};
-use crate::lab::gallery::{BAND, band, curve, distinct, with_legend};
-use crate::output::colors::Rgb;
-use crate::output::plot::{Axis, BLACK, GRAY, Mark, Panel, Point, Sheet, Style, line_color};
-use crate::runs::summary::Summary;
+use crate::curves::{self, Curve};
+use crate::gallery::{BAND, band, curve, distinct, with_legend};
+use output::colors::Rgb;
+use output::plot::{Axis, BLACK, GRAY, Mark, Panel, Point, Sheet, Style, line_color};
+use runs::summary::Summary;
 
 /// The points of a curve.
 const POINTS: u32 = 100;

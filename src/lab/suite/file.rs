@@ -4,10 +4,8 @@ use std::path::Path;
 
 use super::keys::{Case, File};
 use super::known::check_cases;
-use crate::lab::sweep::{
-    Changes, DataFile, FOLDER, PROFILE, Study, StudyError, Written, check_keys,
-};
-use crate::scenario::{Problem, ScenarioError, in_plain_words};
+use crate::sweep::{Changes, DataFile, FOLDER, PROFILE, Study, StudyError, Written, check_keys};
+use scenario::{Problem, ScenarioError, in_plain_words};
 
 /// A study with expected results.
 pub struct Suite {

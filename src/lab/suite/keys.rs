@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_untagged::UntaggedEnumVisitor;
 
 use super::quantity::{Function, Quantity};
-use crate::lab::sweep::{DataFile, Entries};
+use crate::sweep::{DataFile, Entries};
 
 /// The keys of a study's file that make it a suite, and those that the suite reads, too.
 #[derive(Debug, Deserialize)]

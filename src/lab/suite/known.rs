@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use super::file::Suite;
 use super::keys::{Case, Check, Expected};
 use super::quantity::{COUNTS, Other, Quantity};
-use crate::lab::sweep::{Cell, Study, StudyError, check_name};
-use crate::scenario::measurements::Measurement;
-use crate::scenario::quote::shown;
-use crate::scenario::{Problem, Scenario, suggestion};
+use crate::sweep::{Cell, Study, StudyError, check_name};
+use scenario::measurements::Measurement;
+use scenario::quote::shown;
+use scenario::{Problem, Scenario, suggestion};
 
 /// The label of a run; empty without one.
 pub fn label(cell: &Cell) -> &str {

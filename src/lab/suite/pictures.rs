@@ -2,14 +2,14 @@
 
 use super::keys::{Case, Moment};
 use super::known::label;
-use crate::engine::simulation::{Fault, Simulation};
-use crate::lab::error::LabError;
-use crate::lab::sweep::Cell;
-use crate::output::picture::{Crowd, Picture};
-use crate::output::plot::Print;
-use crate::runs::job::Listener;
-use crate::runs::parallel::side_by_side;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::sweep::Cell;
+use engine::simulation::{Fault, Simulation};
+use output::picture::{Crowd, Picture};
+use output::plot::Print;
+use runs::job::Listener;
+use runs::parallel::side_by_side;
+use runs::store::Store;
 
 /// Draws a run of each case that asks for a picture, at one moment, with the first profile and seed: `NAME.png`.
 pub fn save(

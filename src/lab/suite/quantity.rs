@@ -3,10 +3,10 @@
 use serde::de::{Deserialize, Deserializer};
 use serde_untagged::UntaggedEnumVisitor;
 
-use crate::analysis::statistics::{MeanStd, uniform_probability};
-use crate::engine::distribution::{Distribution, Family};
-use crate::runs::summary::{PlaceResult, Summary};
-use crate::scenario::measurements::Walk;
+use analysis::statistics::{MeanStd, uniform_probability};
+use engine::distribution::{Distribution, Family};
+use runs::summary::{PlaceResult, Summary};
+use scenario::measurements::Walk;
 
 /// What every run counts, beside its measurements.
 pub(super) const COUNTS: [&str; 4] = ["entered", "remaining", "stuck", "time_secs"];

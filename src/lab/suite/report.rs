@@ -8,10 +8,10 @@ use super::counts::is_fitted;
 use super::file::Suite;
 use super::keys::Case;
 use super::status::Passed;
-use crate::analysis::statistics::Range;
-use crate::lab::error::LabError;
-use crate::output::table::Table;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use analysis::statistics::Range;
+use output::table::Table;
+use runs::store::Store;
 
 /// The name of the check of walls.
 pub const THROUGH_WALLS: &str = "people through walls";

@@ -10,16 +10,16 @@ use super::keys::{Case, Expected};
 use super::known::{check_runs, label};
 use super::report::{Finding, Report, Skipped, THROUGH_WALLS};
 use super::{data, deviations, diagrams, pictures};
-use crate::lab::error::LabError;
-use crate::lab::gallery::{distinct, save};
-use crate::lab::jobs::{read, results};
-use crate::lab::sweep::{Cell, Changes, Study, StudyError};
-use crate::output::plot::Print;
-use crate::runs::case::RunResult;
-use crate::runs::job::Listener;
-use crate::runs::store::Store;
-use crate::runs::summary::Summary;
-use crate::scenario::Setting;
+use crate::error::LabError;
+use crate::gallery::{distinct, save};
+use crate::jobs::{read, results};
+use crate::sweep::{Cell, Changes, Study, StudyError};
+use output::plot::Print;
+use runs::case::RunResult;
+use runs::job::Listener;
+use runs::store::Store;
+use runs::summary::Summary;
+use scenario::Setting;
 
 /// The part of a suite that is computed.
 #[derive(Default)]

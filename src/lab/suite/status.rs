@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::report::Report;
-use crate::scenario::input;
+use scenario::input;
 
 /// The results of a suite by profile.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -4,8 +4,8 @@ use std::fmt;
 
 use serde_json::Value;
 
-use crate::runs::case::Case;
-use crate::scenario::quote::shown;
+use runs::case::Case;
+use scenario::quote::shown;
 
 /// One run of a study.
 #[derive(Debug, Clone)]
@@ -60,7 +60,7 @@ impl fmt::Display for Cell {
 }
 
 /// A value as in `--set key=value`: text without quotes.
-pub(in crate::lab) fn plain(value: &Value) -> String {
+pub(crate) fn plain(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
         other => other.to_string(),

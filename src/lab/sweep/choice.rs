@@ -7,9 +7,9 @@ use serde_json::Value;
 use super::cell::{MOST_CELLS, short};
 use super::entries::Entries;
 use super::written::Written;
-use crate::runs::case::Source;
-use crate::scenario::quote::shown;
-use crate::scenario::{Problem, SHIPPED, Setting, suggestion};
+use runs::case::Source;
+use scenario::quote::shown;
+use scenario::{Problem, SHIPPED, Setting, suggestion};
 
 /// The key of the scenario, which can be varied like a setting.
 pub(super) const SCENARIO: &str = "scenario";
@@ -130,7 +130,7 @@ fn choice(
 }
 
 /// A shipped scenario by its name, or a file.
-pub(in crate::lab) fn source(name: &str, place: &str, root: &Written) -> Result<Source, Problem> {
+pub(crate) fn source(name: &str, place: &str, root: &Written) -> Result<Source, Problem> {
     if let Some(shipped) = Source::shipped(name) {
         return Ok(shipped);
     }

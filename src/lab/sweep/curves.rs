@@ -3,11 +3,11 @@
 use super::Study;
 use super::gathered::Gathered;
 use super::pictures::other;
-use crate::lab::curves::{BAND, Curve, csv, curves, panel};
-use crate::lab::error::LabError;
-use crate::lab::gallery::{color, distinct, with_legend};
-use crate::output::plot::{Print, Sheet};
-use crate::runs::store::Store;
+use crate::curves::{BAND, Curve, csv, curves, panel};
+use crate::error::LabError;
+use crate::gallery::{color, distinct, with_legend};
+use output::plot::{Print, Sheet};
+use runs::store::Store;
 
 /// The most lines of a picture: colors repeat after them.
 const MOST_LINES: usize = 14;

@@ -6,11 +6,11 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 
 use super::cell::LABEL;
-use crate::scenario::Problem;
+use scenario::Problem;
 
 /// Keys and values as written.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(in crate::lab) struct Entries(pub Vec<(String, Value)>);
+pub(crate) struct Entries(pub Vec<(String, Value)>);
 
 impl Entries {
     /// The label, and the other entries.

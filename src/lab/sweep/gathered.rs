@@ -7,13 +7,13 @@ use serde_json::{Map, Value, json};
 
 use super::Study;
 use super::cell::Cell;
-use crate::analysis::statistics::MeanStd;
-use crate::lab::error::LabError;
-use crate::lab::gallery::distinct;
-use crate::output::plot::Sheet;
-use crate::runs::case::RunResult;
-use crate::runs::identity::ENGINE;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::gallery::distinct;
+use analysis::statistics::MeanStd;
+use output::plot::Sheet;
+use runs::case::RunResult;
+use runs::identity::ENGINE;
+use runs::store::Store;
 
 /// The state of a cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -150,7 +150,7 @@ impl<'a> Gathered<'a> {
     }
 
     /// The names of all numbers that are averaged over seeds.
-    pub(in crate::lab) fn numbers(&self) -> Vec<String> {
+    pub(crate) fn numbers(&self) -> Vec<String> {
         let mut names = self.metrics();
         names.extend(["evacuated", "time_secs"].map(str::to_owned));
         distinct(names)
@@ -214,7 +214,7 @@ fn settings(cell: &Cell) -> Value {
 }
 
 /// A metric of a run, or one of its counts.
-pub(in crate::lab) fn number(result: &RunResult, name: &str) -> Option<f64> {
+pub(crate) fn number(result: &RunResult, name: &str) -> Option<f64> {
     match (result.summary.metrics.get(name), name) {
         (Some(value), _) => value.as_f64(),
         (None, "evacuated") => Some(result.evacuated as f64),

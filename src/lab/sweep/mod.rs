@@ -15,7 +15,7 @@
 //! | `list` | a list of objects of settings, one for each cell; each may have a `label` for tables |
 //! | `grid` | an object of settings, each with a list of values; all combinations are run |
 //! | `seeds` | the number of seeds (1, 2, …), or a list of seeds |
-//! | `cases`, `reasons`, `data` | what a [suite](crate::lab::suite) expects of the runs |
+//! | `cases`, `reasons`, `data` | what a [suite](crate::suite) expects of the runs |
 //! | `name` | the name of the results; by default the file's name |
 //! | `description` | a description, in one line |
 //!
@@ -37,23 +37,23 @@ mod tables;
 mod written;
 
 pub use cell::Cell;
-pub(in crate::lab) use cell::plain;
-pub(in crate::lab) use choice::source;
-pub(in crate::lab) use entries::Entries;
-pub(in crate::lab) use gathered::number;
+pub(crate) use cell::plain;
+pub(crate) use choice::source;
+pub(crate) use entries::Entries;
+pub(crate) use gathered::number;
 pub use gathered::{Combination, Gathered, State};
 pub use pictures::{Drawing, DrawingError};
-pub(in crate::lab) use plan::{Changes, DataFile, PROFILE, check_keys};
-pub(in crate::lab) use readable::readable;
-pub(in crate::lab) use seeds::Seeds;
+pub(crate) use plan::{Changes, DataFile, PROFILE, check_keys};
+pub(crate) use readable::readable;
+pub(crate) use seeds::Seeds;
 pub use shard::Shard;
-pub(in crate::lab) use study::{FOLDER, check_name};
+pub(crate) use study::{FOLDER, check_name};
 pub use study::{Study, StudyError};
-pub(in crate::lab) use written::Written;
+pub(crate) use written::Written;
 
-use crate::runs::error::StoreError;
-use crate::runs::job::{self, Listener, Tally};
-use crate::runs::store::Store;
+use runs::error::StoreError;
+use runs::job::{self, Listener, Tally};
+use runs::store::Store;
 
 /// Computes the cells of a shard that are not in `store`, as [`job::run`] does, within the study's memory.
 ///

@@ -8,10 +8,10 @@ use super::Study;
 use super::cell::{LABEL, plain};
 use super::gathered::{Combination, Gathered};
 use super::readable::{readable, readables};
-use crate::analysis::statistics::MeanStd;
-use crate::lab::gallery::{self, band, curve, distinct, spanned, with_legend};
-use crate::output::colors::{ColorMap, Rgb, light};
-use crate::output::plot::{Axis, ColorBar, Mark, Panel, Point, Sheet, Style, line_color};
+use crate::gallery::{self, band, curve, distinct, spanned, with_legend};
+use analysis::statistics::MeanStd;
+use output::colors::{ColorMap, Rgb, light};
+use output::plot::{Axis, ColorBar, Mark, Panel, Point, Sheet, Style, line_color};
 
 /// The most panels of a sheet that draws everything.
 const MOST_PANELS: usize = 12;

@@ -12,15 +12,15 @@ use super::choice::{Choice, Meaning, SCENARIO, axis, choices, said, source};
 use super::entries::Entries;
 use super::seeds::Seeds;
 use super::written::Written;
-use crate::lab::gallery::distinct;
-use crate::runs::case::{Case, Source};
-use crate::runs::error::RunError;
-use crate::runs::memory::Memory;
-use crate::scenario::quote::shown;
-use crate::scenario::{Problem, ScenarioError, Setting};
+use crate::gallery::distinct;
+use runs::case::{Case, Source};
+use runs::error::RunError;
+use runs::memory::Memory;
+use scenario::quote::shown;
+use scenario::{Problem, ScenarioError, Setting};
 
 /// The key of the grid that suites vary.
-pub(in crate::lab) const PROFILE: &str = "profile";
+pub(crate) const PROFILE: &str = "profile";
 
 /// The whole file.
 #[derive(Debug, Default, Deserialize)]
@@ -85,7 +85,7 @@ pub struct Changes<'a> {
 ///
 /// # Errors
 /// The first problem, with its place in the file.
-pub(in crate::lab) fn check_keys(of: &Written) -> Result<(), ScenarioError> {
+pub(crate) fn check_keys(of: &Written) -> Result<(), ScenarioError> {
     of.parsed::<File>(File::NEEDS).map(|_| ())
 }
 

@@ -5,11 +5,11 @@ use std::collections::HashSet;
 use serde::de::{Deserialize, Deserializer, Error, Unexpected};
 use serde_untagged::UntaggedEnumVisitor;
 
-use crate::scenario::Problem;
+use scenario::Problem;
 
 /// The seeds as written.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::lab) enum Seeds {
+pub(crate) enum Seeds {
     /// The seeds 1, 2, … up to this number.
     Count(u64),
     /// These seeds.
@@ -25,7 +25,7 @@ pub(in crate::lab) enum Seeds {
 
 impl Seeds {
     /// As many seeds as these, from `first` on.
-    pub(in crate::lab) fn from(&self, first: u64) -> Self {
+    pub(crate) fn from(&self, first: u64) -> Self {
         let count = match self {
             Self::Count(count) | Self::From { count, .. } => *count,
             Self::List(list) => list.len() as u64,
@@ -34,7 +34,7 @@ impl Seeds {
     }
 
     /// All seeds, after validation; at most `most` are allowed.
-    pub(in crate::lab) fn all(&self, most: usize) -> Result<Vec<u64>, Problem> {
+    pub(crate) fn all(&self, most: usize) -> Result<Vec<u64>, Problem> {
         let (count, least) = match self {
             Self::Count(count) | Self::From { count, .. } => (*count, "must be at least 1"),
             Self::List(list) => (list.len() as u64, "must not be empty"),

@@ -8,13 +8,13 @@ use serde_json::Value;
 use super::cell::{Cell, LABEL};
 use super::plan::{Changes, File, Plan};
 use super::written::Written;
-use crate::lab::error::LabError;
-use crate::lab::jobs::each;
-use crate::runs::error::{RunError, StoreError};
-use crate::runs::job::Job;
-use crate::runs::memory::Memory;
-use crate::scenario::quote::shown;
-use crate::scenario::{Problem, ScenarioError};
+use crate::error::LabError;
+use crate::jobs::each;
+use runs::error::{RunError, StoreError};
+use runs::job::Job;
+use runs::memory::Memory;
+use scenario::quote::shown;
+use scenario::{Problem, ScenarioError};
 
 /// The maximum length of a name, bytes: results add to it, and file names are limited.
 const LONGEST_NAME: usize = 200;
@@ -47,7 +47,7 @@ impl From<StudyError> for LabError {
 }
 
 /// The folder of the built-in studies.
-pub(in crate::lab) const FOLDER: &str = "studies";
+pub(crate) const FOLDER: &str = "studies";
 
 /// A scenario over settings and seeds.
 #[derive(Debug, Clone)]
@@ -153,7 +153,7 @@ impl Study {
     }
 
     /// A study with these changes.
-    pub(in crate::lab) fn changed(
+    pub(crate) fn changed(
         from: &Written,
         changes: &Changes,
         memory: Option<u64>,
@@ -187,7 +187,7 @@ impl Study {
 }
 
 /// Whether the name is suitable for result files on every system.
-pub(in crate::lab) fn check_name(name: &str) -> Result<(), Problem> {
+pub(crate) fn check_name(name: &str) -> Result<(), Problem> {
     let reason = if name.is_empty() {
         "it is empty"
     } else if name.starts_with('.') {

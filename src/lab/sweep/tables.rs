@@ -5,10 +5,10 @@ use serde_json::Value;
 use super::cell::{Cell, plain, short};
 use super::gathered::{Combination, Gathered, State};
 use super::{Shard, Study};
-use crate::lab::error::LabError;
-use crate::output::plot::Print;
-use crate::output::table::{self, Columns, Table};
-use crate::runs::case::RunResult;
+use crate::error::LabError;
+use output::plot::Print;
+use output::table::{self, Columns, Table};
+use runs::case::RunResult;
 
 /// A column about the run itself.
 type Count = (&'static str, fn(&RunResult) -> table::Cell);

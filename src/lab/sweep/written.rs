@@ -5,14 +5,12 @@ use std::path::{Path, PathBuf};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::runs::case::Source;
-use crate::scenario::{
-    Problem, ScenarioError, built_in, in_plain_words, input, kinds, read_document,
-};
+use runs::case::Source;
+use scenario::{Problem, ScenarioError, built_in, in_plain_words, input, kinds, read_document};
 
 /// The text of a study, a suite or a calibration, and where it comes from.
 #[derive(Debug, Clone)]
-pub(in crate::lab) struct Written {
+pub(crate) struct Written {
     /// The text.
     pub text: String,
     /// The path of the file, relative to `scenarios/` if it is built in.

@@ -6,9 +6,9 @@ mod web;
 
 use std::path::Path;
 
-use crate::output::plot::{PlotError, Print, Sheet};
-use crate::output::table::Table;
-use crate::runs::outputs::write_file;
+use crate::plot::{PlotError, Print, Sheet};
+use crate::table::Table;
+use runs::outputs::write_file;
 
 /// The width of figures and tables, millimeters.
 const WIDTH_MM: f64 = 170.0;

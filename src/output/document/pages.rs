@@ -1,12 +1,10 @@
 //! Documents as PDF, on A4. All lengths are in points.
 
 use super::{Block, Document, print};
-use crate::output::colors::Rgb;
-use crate::output::html::PROGRAM;
-use crate::output::plot::{
-    BLACK, GRAY, LINE, Pages, PlotError, Print, Sheet, text_lines, text_width,
-};
-use crate::output::table::Table;
+use crate::colors::Rgb;
+use crate::html::PROGRAM;
+use crate::plot::{BLACK, GRAY, LINE, Pages, PlotError, Print, Sheet, text_lines, text_width};
+use crate::table::Table;
 
 const SIZE: [f64; 2] = [595.3, 841.9];
 const LEFT: f64 = 56.7;

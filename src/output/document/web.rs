@@ -1,8 +1,8 @@
 //! Documents as HTML.
 
 use super::{Block, Document, print};
-use crate::output::html::{END, Head, PROGRAM, escape, picture};
-use crate::output::plot::PlotError;
+use crate::html::{END, Head, PROGRAM, escape, picture};
+use crate::plot::PlotError;
 
 /// What documents have beside the rules of all files.
 const STYLE: &str = "\

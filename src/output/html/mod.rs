@@ -6,7 +6,7 @@
 //! style sheet
 //! `style.css` has the look that all of them share; a kind of file adds its own rules.
 //!
-//! [`Table::html`]: crate::output::table::Table::html
+//! [`Table::html`]: crate::table::Table::html
 
 use std::fmt::Write as _;
 

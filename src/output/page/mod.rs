@@ -20,12 +20,12 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::engine::math::Vector;
-use crate::output::colors::ColorMap;
-use crate::output::html::{self, Head, escape};
-use crate::output::picture::Picture;
-use crate::output::scenery;
+use crate::colors::ColorMap;
+use crate::html::{self, Head, escape};
+use crate::picture::Picture;
+use crate::scenery;
 use block::Block;
+use engine::math::Vector;
 use file::{PageFile, Part};
 use plan::{hex, millimeters};
 

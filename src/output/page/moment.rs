@@ -1,13 +1,13 @@
 //! A moment of a run, for its page.
 
-use crate::analysis::statistics::MeanStd;
-use crate::engine::journeys::{Status, Trip};
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::output::events::Line;
-use crate::output::picture::Crowd;
-use crate::output::recording::{DebugAgents, forces_on};
-use crate::output::series;
+use crate::events::Line;
+use crate::picture::Crowd;
+use crate::recording::{DebugAgents, forces_on};
+use crate::series;
+use analysis::statistics::MeanStd;
+use engine::journeys::{Status, Trip};
+use engine::math::Vector;
+use engine::simulation::Simulation;
 
 /// People at one moment, in the order of the crowd.
 #[derive(Debug, Clone)]

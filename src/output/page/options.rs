@@ -1,10 +1,10 @@
 //! The content of a page beside its frames.
 
-use crate::engine::scene::{Group, Scene};
-use crate::output::colors::Rgb;
-use crate::output::recording::force_terms;
-use crate::output::scenery;
-use crate::output::series::{self, CROWD, Count};
+use crate::colors::Rgb;
+use crate::recording::force_terms;
+use crate::scenery;
+use crate::series::{self, CROWD, Count};
+use engine::scene::{Group, Scene};
 
 /// The plots of the first time series of [`CROWD`]; a page has neither energies nor computing times.
 const PLOTS: [&str; 5] = [

@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use crate::analysis::round;
-use crate::engine::math::Vector;
-use crate::output::colors::{ColorMap, Rgb};
-use crate::output::plot::{Mark, Style};
+use crate::colors::{ColorMap, Rgb};
+use crate::plot::{Mark, Style};
+use analysis::round;
+use engine::math::Vector;
 
 /// The number of colors of a bar.
 const COLORS: u16 = 256;

@@ -2,11 +2,11 @@
 
 use super::paths::{BORDER, LEAST_WAIT, waited};
 use super::{Coloring, Field, Frame, Picture, xy};
-use crate::engine::journeys::Status;
-use crate::engine::simulation::Simulation;
-use crate::output::colors::Rgb;
-use crate::output::plot::{BLACK, Disc, Mark, Style, label_lines};
-use crate::output::scenery::WALKING;
+use crate::colors::Rgb;
+use crate::plot::{BLACK, Disc, Mark, Style, label_lines};
+use crate::scenery::WALKING;
+use engine::journeys::Status;
+use engine::simulation::Simulation;
 
 /// The color of agents in pictures of ways, and of those without a value.
 pub const FAINT: Rgb = [150, 154, 162];

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
+use engine::math::Vector;
+use engine::simulation::Simulation;
 
 /// Moves above this speed, m/s, are jumps: to the other end of a period, or to another person with the same id.
 const FASTEST: f64 = 12.0;

@@ -2,8 +2,8 @@
 
 use super::agents::{self, Entry};
 use super::{Frame, MARGIN, Picture, TEXT_HEIGHT, scene};
-use crate::analysis::round;
-use crate::output::plot::{Mark, label_width};
+use crate::plot::{Mark, label_width};
+use analysis::round;
 
 /// The height of a single row, points.
 const ROW: f64 = 22.0;
@@ -81,9 +81,9 @@ pub fn marks(picture: &Picture, frame: &Frame, has_paths: bool) -> Vec<Mark> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::math::Vector;
-    use crate::engine::scene::{Region, Scene};
-    use crate::output::picture::Crowd;
+    use crate::picture::Crowd;
+    use engine::math::Vector;
+    use engine::scene::{Region, Scene};
 
     #[test]
     fn on_panels_of_any_width_the_legend_ends_before_the_color_bar() {

@@ -1,10 +1,10 @@
 //! Walls, colored by the force on them.
 
 use super::xy;
-use crate::analysis::wall_forces::Outlines;
-use crate::engine::simulation::Simulation;
-use crate::output::colors::WALL_FORCE;
-use crate::output::plot::{ColorBar, Mark, Style};
+use crate::colors::WALL_FORCE;
+use crate::plot::{ColorBar, Mark, Style};
+use analysis::wall_forces::Outlines;
+use engine::simulation::Simulation;
 
 /// The parts of walls with a force on them, colored by the force on 1 m.
 pub fn marks(simulation: &Simulation, body_mass: f64) -> Vec<Mark> {

@@ -12,18 +12,18 @@ mod scene;
 pub use crowd::{Crowd, Trails};
 pub use paths::Paths;
 
-use crate::engine::math::{Vector, bounds};
-use crate::engine::scene::{Region, Scene};
-use crate::engine::simulation::Simulation;
-use crate::output::colors::{ColorMap, Rgb};
-use crate::output::labels::{Labels, Placed, Screen, along_lines};
-use crate::output::plot::{
+use crate::colors::{ColorMap, Rgb};
+use crate::labels::{Labels, Placed, Screen, along_lines};
+use crate::plot::{
     Axis, Cells, ColorBar, LABEL_SIZE, Label as Text, Mark, Panel, PlotError, Print, Sheet, Style,
     label_width,
 };
-use crate::output::scenery;
-use crate::scenario::floor_plan::Label;
-use crate::scenario::measurements::Observed;
+use crate::scenery;
+use engine::math::{Vector, bounds};
+use engine::scene::{Region, Scene};
+use engine::simulation::Simulation;
+use scenario::floor_plan::Label;
+use scenario::measurements::Observed;
 
 /// The largest panel, points: alone, and one of several.
 const ALONE: [f64; 2] = [640.0, 460.0];

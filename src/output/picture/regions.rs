@@ -1,12 +1,12 @@
 //! The regions and lines that measurements observe.
 
 use super::xy;
-use crate::engine::scene::Scene;
-use crate::output::colors::Rgb;
-use crate::output::labels::{Labels, around};
-use crate::output::plot::{Mark, Style};
-use crate::output::scenery;
-use crate::scenario::measurements::Observed;
+use crate::colors::Rgb;
+use crate::labels::{Labels, around};
+use crate::plot::{Mark, Style};
+use crate::scenery;
+use engine::scene::Scene;
+use scenario::measurements::Observed;
 
 /// Their color.
 const OBSERVED: Rgb = [20, 120, 140];

@@ -12,8 +12,8 @@ use image::RgbImage;
 
 use super::Print;
 use super::output::{PlotError, resolution};
-use crate::output::colors::Rgb;
-use crate::runs::outputs::Replacement;
+use crate::colors::Rgb;
+use runs::outputs::Replacement;
 
 /// The most colors in a frame of a GIF, without the transparent one.
 const COLORS: usize = 255;

@@ -1,9 +1,10 @@
 //! Axes.
 
 use super::font::width_of;
-use super::layout::NUMBER;
-use crate::analysis::round;
+use analysis::round;
 
+/// The size of numbers and legends, points.
+pub const NUMBER: f64 = 8.0;
 /// The most numbers on an axis: more would not make it clearer.
 const MOST_TICKS: i32 = 10;
 

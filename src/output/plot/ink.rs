@@ -4,7 +4,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::font::SIZE_PER_EM;
-use crate::output::colors::Rgb;
+use crate::colors::Rgb;
 
 /// The units of a backend, which draws in whole units.
 #[derive(Debug, Clone, Copy)]

@@ -1,5 +1,6 @@
 //! The layout of a sheet. All lengths are in points.
 
+use super::axis::NUMBER;
 use super::font::{LINE, lines, width_of};
 use super::{Axis, Cells, ColorBar, Corner, Mark, Panel, Print, Sheet, Style};
 
@@ -9,7 +10,6 @@ const BETWEEN: f64 = 5.0; // between a color bar and the next panel
 const ABOVE: f64 = 6.0; // between the titles of a row and the row above it, which has no numbers below it
 pub const TITLE: f64 = 12.0; // size of the title of a sheet
 pub const LABEL: f64 = 9.0; // size of titles of panels and labels of axes
-pub const NUMBER: f64 = 8.0; // size of numbers and legends
 pub const TICK: f64 = 2.5; // length of a tick
 pub const PAD: f64 = 2.5; // between a tick, its number and the label of the axis
 pub const BAR_WIDTH: f64 = 9.0; // of a color bar without its numbers

@@ -11,7 +11,7 @@ use plotters::prelude::*;
 use super::ink::{Ink, fill};
 use super::output::{Drawn, PlotError};
 use super::{Cells, Disc, LABEL_SIZE, Label, Mark, NO_DATA, Panel, Style};
-use crate::output::colors::Rgb;
+use crate::colors::Rgb;
 
 /// More discs or cells than this are drawn as pixels: as separate shapes, they would make an SVG too large for
 /// most viewers.

@@ -27,7 +27,7 @@ pub use output::PlotError;
 pub use pages::Pages;
 pub use print::{PAPER_DPI, Print};
 
-use crate::output::colors::{ColorMap, Rgb};
+use crate::colors::{ColorMap, Rgb};
 
 /// Black, for text and axes.
 pub const BLACK: Rgb = [0, 0, 0];

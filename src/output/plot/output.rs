@@ -11,7 +11,7 @@ use super::layout::Layout;
 use super::pdf::Pdf;
 use super::pixels::Pixels;
 use super::{Print, Sheet, draw, font};
-use crate::runs::outputs::write_file;
+use runs::outputs::write_file;
 
 /// Units per point in an SVG.
 const SVG_SCALE: u32 = 4;

@@ -11,7 +11,7 @@ use super::layout::Layout;
 use super::output::{Drawn, FINER};
 use super::pdf::Pdf;
 use super::{PlotError, Print, Sheet, font};
-use crate::output::colors::Rgb;
+use crate::colors::Rgb;
 
 /// Pages while they are drawn, at first one.
 pub struct Pages {

@@ -1,8 +1,8 @@
 //! The arrangement of the views in the viewer's window.
 
 use super::scene::bars;
-use crate::engine::math::Vector;
-use crate::engine::scene::Region;
+use engine::math::Vector;
+use engine::scene::Region;
 
 /// The usual size of the viewer without its panels, pixels, and the height of a view's title.
 const WINDOW: [f64; 2] = [1300.0, 800.0];

@@ -7,9 +7,9 @@ use rerun::{
 };
 
 use super::error::Cause;
-use crate::analysis::way_field::Grid;
-use crate::engine::math::Vector;
-use crate::output::colors::Rgb;
+use crate::colors::Rgb;
+use analysis::way_field::Grid;
+use engine::math::Vector;
 
 /// A place, meters.
 pub type Point = [f32; 2];

@@ -14,8 +14,8 @@ use super::scene::{self, obstacles};
 use super::session::{Debug, Session};
 use super::stream::{Destination, Output};
 use super::text;
-use crate::engine::geometry::Walls;
-use crate::engine::math::Vector;
+use engine::geometry::Walls;
+use engine::math::Vector;
 
 /// One person in a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]

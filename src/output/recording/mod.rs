@@ -54,14 +54,14 @@ pub use stream::{Destination, check_enabled};
 
 use rerun::RecordingStream;
 
-use crate::analysis::wall_forces::Outlines;
-use crate::engine::clock::Clock;
-use crate::engine::simulation::Simulation;
-use crate::output::events::{Events, Line};
-use crate::output::scenery;
+use crate::events::{Events, Line};
+use crate::scenery;
+use analysis::wall_forces::Outlines;
 use debug::focus::Focus;
 use debug::follow::{Follow, Moment};
 use debug::{arrows, layers, moment};
+use engine::clock::Clock;
+use engine::simulation::Simulation;
 use frame::colored_lines::{self, ColoredLines, LEANS, WAITS, WALL_FORCES};
 use frame::{Snapshot, stats};
 use layout::{Content, Kind};

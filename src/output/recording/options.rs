@@ -1,9 +1,9 @@
 //! What a recording is to show.
 
 use super::debug::DebugAgents;
-use crate::engine::math::Vector;
-use crate::engine::scene::Region;
-use crate::scenario::floor_plan::Label;
+use engine::math::Vector;
+use engine::scene::Region;
+use scenario::floor_plan::Label;
 
 /// The texts and views of a recording, in addition to the simulation itself.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,7 +13,7 @@ use rerun::{ChunkStore, ChunkStoreConfig, EntityPath, TimelineName};
 use super::error::RecordingError;
 use super::frame::{FRAME, SIM_TIME, crowd};
 use super::text;
-use crate::engine::math::Vector;
+use engine::math::Vector;
 
 const POSITIONS: &str = "Points2D:positions";
 const RADII: &str = "Points2D:radii";

@@ -17,7 +17,7 @@ use super::options::RecordingOptions;
 use super::scene::bars;
 use super::stream::Output;
 use super::text::{self, Document};
-use crate::output::events::Line;
+use crate::events::Line;
 
 /// Maximum number of queued snapshots; the simulation waits when the queue is full.
 const QUEUE: usize = 4;

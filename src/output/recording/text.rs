@@ -10,11 +10,11 @@ use super::debug::DebugAgents;
 use super::debug::arrows;
 use super::error::Cause;
 use super::options::RecordingOptions;
-use crate::analysis::round::brief;
-use crate::engine::profile::Term;
-use crate::engine::scene::Scene;
-use crate::output::colors::WALL_FORCE_RANGE;
-use crate::output::scenery;
+use crate::colors::WALL_FORCE_RANGE;
+use crate::scenery;
+use analysis::round::brief;
+use engine::profile::Term;
+use engine::scene::Scene;
 
 pub const DOCUMENT: &str = "info/scenario";
 /// The results of the run, for people; and as JSON, which no view shows.

@@ -12,8 +12,8 @@ pub use cell::{Cell, as_precise};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::analysis::statistics::Range;
-use crate::output::html::escape;
+use crate::html::escape;
+use analysis::statistics::Range;
 use cell::Format;
 
 #[derive(Debug, Clone, PartialEq)]

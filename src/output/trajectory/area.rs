@@ -8,12 +8,12 @@ use std::collections::BTreeSet;
 
 use super::Row;
 use super::error::Cause;
-use crate::engine::geometry::AreaIndex;
-use crate::engine::math::{Vector, bounds};
-use crate::engine::period::Period;
-use crate::engine::scene::{Goal, Region};
-use crate::engine::simulation::Simulation;
-use crate::scenario::floor_plan::{Rings, free, outlines, to_wkt};
+use engine::geometry::AreaIndex;
+use engine::math::{Vector, bounds};
+use engine::period::Period;
+use engine::scene::{Goal, Region};
+use engine::simulation::Simulation;
+use scenario::floor_plan::{Rings, free, outlines, to_wkt};
 
 /// Margin around everything, meters.
 const MARGIN: f64 = 5.0;

@@ -4,8 +4,8 @@ use super::area::WalkableArea;
 use super::error::Cause;
 use super::row::{Cell, Row, rows};
 use super::{TrajectoryError, frames_between};
-use crate::engine::scene::Region;
-use crate::engine::simulation::Simulation;
+use engine::scene::Region;
+use engine::simulation::Simulation;
 
 /// The values of a column, row by row.
 #[derive(Debug, Clone, PartialEq)]

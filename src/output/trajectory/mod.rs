@@ -1,4 +1,4 @@
-//! Writes a run as trajectories for other programs. [`crate::scenario::trajectories`] reads them.
+//! Writes a run as trajectories for other programs. [`scenario::trajectories`] reads them.
 //!
 //! | file | read by | holds |
 //! |---|---|---|
@@ -26,10 +26,10 @@ pub use sqlite::journal;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-use crate::engine::clock::Clock;
-use crate::engine::scene::Region;
-use crate::engine::simulation::Simulation;
 use area::WalkableArea;
+use engine::clock::Clock;
+use engine::scene::Region;
+use engine::simulation::Simulation;
 use lines::Lines;
 use sqlite::Sqlite;
 

@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::engine::agents::Agents;
-use crate::engine::frame::Frame;
-use crate::engine::math::{Vector, direction};
-use crate::engine::simulation::Simulation;
+use engine::agents::Agents;
+use engine::frame::Frame;
+use engine::math::{Vector, direction};
+use engine::simulation::Simulation;
 
 /// Below this speed, m/s, an agent faces its goal: the direction of such a velocity is noise.
 const STANDING: f64 = 0.01;

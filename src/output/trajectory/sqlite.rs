@@ -9,7 +9,7 @@ use rusqlite::{Connection, ToSql, params, params_from_iter};
 use super::area::WalkableArea;
 use super::error::Cause;
 use super::{Row, Sink};
-use crate::runs::outputs::followed;
+use runs::outputs::followed;
 
 /// An interrupted run loses at most this much, plus one frame.
 const COMMIT_EVERY: Duration = Duration::from_secs(1);

@@ -1,7 +1,7 @@
 //! What a slip in a scenario file probably meant: numbers with units, comments, spellings of other languages.
 
-use crate::scenario::error::numbers::brief;
-use crate::scenario::error::quote::shown;
+use crate::error::numbers::brief;
+use crate::error::quote::shown;
 
 /// Units with their names for messages, and the factor to the unit that keys have.
 const UNITS: [(&[&str], &str, f64); 12] = [

@@ -5,7 +5,7 @@ pub mod kinds;
 pub mod numbers;
 pub mod quote;
 
-use crate::scenario::error::quote::shown;
+use crate::error::quote::shown;
 
 /// Why a scenario cannot be run; displays as `FILE: key.path[3].key: reason`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::scenario::error::Problem;
-use crate::scenario::file::schema::{allows, resolved, ways};
+use crate::error::Problem;
+use crate::file::schema::{allows, resolved, ways};
 
 /// A list of points is a list of lists of numbers.
 const POINTS: usize = 2;

@@ -2,9 +2,9 @@
 
 use serde_json::{Map, Value};
 
-use crate::scenario::error::Problem;
-use crate::scenario::error::quote::shown;
-use crate::scenario::file::schema::{resolved, ways};
+use crate::error::Problem;
+use crate::error::quote::shown;
+use crate::file::schema::{resolved, ways};
 
 /// The keys of which such an object has exactly one, each with the schema of its value.
 struct Kinds {

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use crate::scenario::error::numbers::plain;
-use crate::scenario::file::File;
-use crate::scenario::file::range::{Range, required};
-use crate::scenario::file::schema::{allows, property, resolved, ways, words_of};
-use crate::scenario::keys::catalog::Parameters;
-use crate::scenario::keys::names::names;
+use crate::error::numbers::plain;
+use crate::file::File;
+use crate::file::range::{Range, required};
+use crate::file::schema::{allows, property, resolved, ways, words_of};
+use crate::keys::catalog::Parameters;
+use crate::keys::names::names;
 
 /// One line of the list of settings.
 #[derive(Debug, Clone, PartialEq, Eq)]

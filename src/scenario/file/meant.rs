@@ -3,10 +3,10 @@
 
 use serde_json::Value;
 
-use crate::scenario::error::Problem;
-use crate::scenario::error::numbers::brief;
-use crate::scenario::error::quote::shown;
-use crate::scenario::file::schema;
+use crate::error::Problem;
+use crate::error::numbers::brief;
+use crate::error::quote::shown;
+use crate::file::schema;
 
 /// The lists of a scenario whose elements have names that people can walk to, with what one of them is.
 const PLACES: [(&str, &str); 5] = [

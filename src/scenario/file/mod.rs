@@ -13,25 +13,25 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::engine::boundary::WallMethod;
-use crate::engine::clock::PAPER_TIME_STEP;
-use crate::engine::neighbors::ListPolicy;
-use crate::engine::pairs::Precision;
-use crate::engine::scene::{Knowledge, RouteChoice, Scene};
-use crate::scenario::keys::catalog::Parameters;
-use crate::scenario::keys::curve::Curve;
-use crate::scenario::keys::from::FromData;
-use crate::scenario::keys::goals::{Aim, WayFinding};
-use crate::scenario::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE, LONGEST_TIME, STRONGEST};
-use crate::scenario::keys::names::{optional_word, word};
-use crate::scenario::keys::numerics::{IntegratorChoice, TimeStep};
-use crate::scenario::keys::people::{Agent, Crowd, Entrance, Grid};
-use crate::scenario::keys::periodic::Periodic;
-use crate::scenario::keys::places::{Door, Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
-use crate::scenario::keys::preset::Preset;
-use crate::scenario::keys::profiles::ProfileChoice;
-use crate::scenario::keys::shapes::{Corners, Label, Outline, Point, Ring};
-use crate::scenario::measurements::Measurement;
+use crate::keys::catalog::Parameters;
+use crate::keys::curve::Curve;
+use crate::keys::from::FromData;
+use crate::keys::goals::{Aim, WayFinding};
+use crate::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE, LONGEST_TIME, STRONGEST};
+use crate::keys::names::{optional_word, word};
+use crate::keys::numerics::{IntegratorChoice, TimeStep};
+use crate::keys::people::{Agent, Crowd, Entrance, Grid};
+use crate::keys::periodic::Periodic;
+use crate::keys::places::{Door, Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
+use crate::keys::preset::Preset;
+use crate::keys::profiles::ProfileChoice;
+use crate::keys::shapes::{Corners, Label, Outline, Point, Ring};
+use crate::measurements::Measurement;
+use engine::boundary::WallMethod;
+use engine::clock::PAPER_TIME_STEP;
+use engine::neighbors::ListPolicy;
+use engine::pairs::Precision;
+use engine::scene::{Knowledge, RouteChoice, Scene};
 
 /// A scenario for `sandbox run`.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]

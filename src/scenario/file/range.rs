@@ -5,11 +5,11 @@ use std::fmt;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-use crate::scenario::error::numbers::brief;
-use crate::scenario::error::quote::shown;
-use crate::scenario::error::{Problem, Under, in_plain_words};
-use crate::scenario::file::schema::{allows, resolved, root, ways, words_of};
-use crate::scenario::file::{brackets, keyed};
+use crate::error::numbers::brief;
+use crate::error::quote::shown;
+use crate::error::{Problem, Under, in_plain_words};
+use crate::file::schema::{allows, resolved, root, ways, words_of};
+use crate::file::{brackets, keyed};
 
 /// Rejects numbers out of range, empty names and lists, and missing keys. Also rejects wrong types that serde would
 /// accept (a list in place of an object) or would refuse without saying where.

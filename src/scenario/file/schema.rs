@@ -9,8 +9,8 @@ use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
 use serde_json::{Value, json};
 
-use crate::scenario::file::File;
-use crate::scenario::keys::names::{OLD_KEYS, OldKey};
+use crate::file::File;
+use crate::keys::names::{OLD_KEYS, OldKey};
 
 static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
     let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(tidy));

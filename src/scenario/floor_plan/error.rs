@@ -1,6 +1,6 @@
 //! Errors in floor plans.
 
-use crate::scenario::error::quote::{shown, shown_message};
+use crate::error::quote::{shown, shown_message};
 use std::path::PathBuf;
 
 /// Why a file or text is not a floor plan, with advice.

@@ -3,9 +3,9 @@
 use super::error::FloorPlanError;
 use super::shape::{SAME, Shape, part};
 use super::unite::{free, rings};
-use crate::engine::geometry::{Area, Ring};
-use crate::engine::math::{Vector, bounds};
-use crate::scenario::error::quote::shown;
+use crate::error::quote::shown;
+use engine::geometry::{Area, Ring};
+use engine::math::{Vector, bounds};
 
 /// Plans with more polygons are not searched: all pairs of bounding boxes are compared.
 const MOST: usize = 5_000;

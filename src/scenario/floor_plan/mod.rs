@@ -11,8 +11,8 @@
 //! does not depend on how a plan is cut into pieces.
 //! Orientation, third coordinates, a closing point and repeated points do not matter.
 
-use crate::scenario::error::kinds;
-use crate::scenario::input;
+use crate::error::kinds;
+use crate::input;
 mod boundary;
 mod error;
 mod geojson;
@@ -31,8 +31,8 @@ pub use wkt::to_wkt;
 
 use std::path::Path;
 
-use crate::engine::geometry::{Area, Polygon, PolygonError, Ring};
-use crate::engine::math::bounds;
+use engine::geometry::{Area, Polygon, PolygonError, Ring};
+use engine::math::bounds;
 use shape::Shape;
 
 /// The area that a person needs to stand, m².
@@ -152,7 +152,7 @@ impl FloorPlan {
     /// An obstacle from a list of rings (the outline, then the holes) of points in meters.
     ///
     /// # Errors
-    /// Those of [`Ring::new`](crate::engine::geometry::Ring::new) and [`Polygon::filling`], with coordinates.
+    /// Those of [`Ring::new`](engine::geometry::Ring::new) and [`Polygon::filling`], with coordinates.
     pub fn obstacle(rings: &[Vec<[f64; 2]>]) -> Result<Area, FloorPlanError> {
         let shape = Shape {
             place: String::new(),

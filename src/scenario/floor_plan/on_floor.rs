@@ -3,8 +3,8 @@
 use super::error::FloorPlanError;
 use super::shape::Shape;
 use super::unite::{Rings, free, outlines};
-use crate::engine::geometry::{Area, Ring, Walls};
-use crate::engine::math::{Vector, direction, perpendicular};
+use engine::geometry::{Area, Ring, Walls};
+use engine::math::{Vector, direction, perpendicular};
 
 /// A line is on the floor if floor is this near, meters: lines are drawn along walls.
 const NEAR: f64 = 0.01;

@@ -1,8 +1,8 @@
 //! A polygon of a file → an area with valid rings.
 
 use super::error::FloorPlanError;
-use crate::engine::geometry::{Area, Polygon, PolygonError, Ring};
-use crate::engine::math::{Vector, bounds};
+use engine::geometry::{Area, Polygon, PolygonError, Ring};
+use engine::math::{Vector, bounds};
 
 /// Largest |x| and |y|, meters. Beyond this, walls and contacts lose precision.
 const FARTHEST: f64 = 1e6;

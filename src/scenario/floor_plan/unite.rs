@@ -11,8 +11,8 @@ use i_overlay::vector::edge::{CLIP_LEFT, CLIP_RIGHT, SUBJ_LEFT, SUBJ_RIGHT, Vect
 use super::boundary::{self, Edge, Point};
 use super::error::FloorPlanError;
 use super::shape::SAME;
-use crate::engine::geometry::{Area, Polygon as Solid, Ring, assemble};
-use crate::engine::math::{Vector, bounds};
+use engine::geometry::{Area, Polygon as Solid, Ring, assemble};
+use engine::math::{Vector, bounds};
 
 /// Largest distance between a computed and a given corner, relative to the whole extent: i_overlay computes on a grid
 /// of about 2⁻³⁰ of it.

@@ -7,8 +7,8 @@ use wkt::types::{Coord, Dimension, LineString, MultiPolygon, Polygon};
 
 use super::error::FloorPlanError;
 use super::shape::{Geometry, Shape};
-use crate::engine::geometry::Area;
-use crate::engine::math::Vector;
+use engine::geometry::Area;
+use engine::math::Vector;
 
 /// EPSG codes of common coordinate systems in degrees.
 pub(super) const IN_DEGREES: [u32; 16] = [

@@ -4,8 +4,8 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-use crate::scenario::input::embedded;
-use crate::scenario::keys::parameters::Parameters;
+use crate::input::embedded;
+use crate::keys::parameters::Parameters;
 
 /// A calibrated profile.
 #[derive(Debug, Deserialize)]

@@ -2,12 +2,12 @@
 
 pub use super::parameters::{NavigationKind, Parameters, SPH, WalkingLawKind};
 
-use crate::engine::forces::contact::Contact;
-use crate::engine::forces::viscosity::Viscosity;
-use crate::engine::forces::walking::WalkingLaw;
-use crate::engine::profile::{Blend, BlendError, BlendStep, Navigation, Profile};
-use crate::scenario::error::{quote::shown, suggestion};
-use crate::scenario::keys::calibrated;
+use crate::error::{quote::shown, suggestion};
+use crate::keys::calibrated;
+use engine::forces::contact::Contact;
+use engine::forces::viscosity::Viscosity;
+use engine::forces::walking::WalkingLaw;
+use engine::profile::{Blend, BlendError, BlendStep, Navigation, Profile};
 
 /// The names of §5.5.
 pub const NAMES: [&str; 7] = [

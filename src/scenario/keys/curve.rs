@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 use serde_untagged::UntaggedEnumVisitor;
 
-use crate::scenario::error::Problem;
-use crate::scenario::error::quote::shown;
-use crate::scenario::keys::limits::STRONGEST;
+use crate::error::Problem;
+use crate::error::quote::shown;
+use crate::keys::limits::STRONGEST;
 
 /// Points in the order of time, or the name of a text file with two columns, relative to this file's folder
 #[derive(Debug, Clone, JsonSchema)]

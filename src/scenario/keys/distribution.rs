@@ -6,8 +6,8 @@ use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use serde_untagged::UntaggedEnumVisitor;
 
-use crate::engine::distribution::{AGES, LARGEST_SHAPE};
-use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::keys::limits::LONGEST_TIME;
+use engine::distribution::{AGES, LARGEST_SHAPE};
 
 /// The largest parameter of a distribution.
 const LARGEST: f64 = 1e9;

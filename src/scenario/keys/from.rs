@@ -3,11 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::engine::math::Vector;
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::{FARTHEST, HIGHEST_DENSITY, LONGEST_TIME};
-use crate::scenario::keys::people::People;
-use crate::scenario::trajectories::Unit;
+use crate::error::Problem;
+use crate::keys::limits::{FARTHEST, HIGHEST_DENSITY, LONGEST_TIME};
+use crate::keys::people::People;
+use crate::trajectories::Unit;
+use engine::math::Vector;
 
 /// The key.
 pub const FROM: &str = "from";

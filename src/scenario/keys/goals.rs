@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_untagged::UntaggedEnumVisitor;
 
-use crate::scenario::keys::shapes::Point;
+use crate::keys::shapes::Point;
 
 /// A goal: a point, or a direction
 #[derive(Debug, Clone, Copy, JsonSchema)]

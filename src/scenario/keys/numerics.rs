@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::engine::clock::SHORTEST_TIME_STEP;
+use engine::clock::SHORTEST_TIME_STEP;
 
 /// A time step in seconds, or `auto`.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]

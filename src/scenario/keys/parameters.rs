@@ -4,16 +4,16 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
-use crate::engine::density::SphParameters;
-use crate::engine::forces::contact::Contact;
-use crate::engine::forces::goal::GoalForce;
-use crate::engine::forces::legs::Legs;
-use crate::engine::forces::rvo::Rvo;
-use crate::engine::forces::social::SocialForce;
-use crate::engine::forces::viscosity::Viscosity;
-use crate::engine::forces::walking::headings::Gap;
-use crate::engine::forces::walking::{DensityAhead, Drag, Headings, Headway};
-use crate::scenario::keys::limits::{HIGHEST_DENSITY, STRONGEST};
+use crate::keys::limits::{HIGHEST_DENSITY, STRONGEST};
+use engine::density::SphParameters;
+use engine::forces::contact::Contact;
+use engine::forces::goal::GoalForce;
+use engine::forces::legs::Legs;
+use engine::forces::rvo::Rvo;
+use engine::forces::social::SocialForce;
+use engine::forces::viscosity::Viscosity;
+use engine::forces::walking::headings::Gap;
+use engine::forces::walking::{DensityAhead, Drag, Headings, Headway};
 
 /// The longest range, meters.
 const FARTHEST: f64 = 100.0;

@@ -1,13 +1,13 @@
 //! The parts of the engine that the parameters of profiles set.
 
 use super::parameters::{Parameters, finite};
-use crate::engine::density::SphParameters;
-use crate::engine::forces::goal::GoalForce;
-use crate::engine::forces::legs::Legs;
-use crate::engine::forces::rvo::Rvo;
-use crate::engine::forces::social::SocialForce;
-use crate::engine::forces::walking::headings::Gap;
-use crate::engine::forces::walking::{DensityAhead, Drag, Headings, Headway};
+use engine::density::SphParameters;
+use engine::forces::goal::GoalForce;
+use engine::forces::legs::Legs;
+use engine::forces::rvo::Rvo;
+use engine::forces::social::SocialForce;
+use engine::forces::walking::headings::Gap;
+use engine::forces::walking::{DensityAhead, Drag, Headings, Headway};
 
 impl Parameters {
     /// The SPH parameters that all profiles of a blend share.

@@ -3,14 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::engine::math::Vector;
-use crate::scenario::keys::distribution;
-use crate::scenario::keys::distribution::Draw;
-use crate::scenario::keys::goals::Aim;
-use crate::scenario::keys::limits::{HIGHEST_DENSITY, LONGEST_TIME};
-use crate::scenario::keys::names::word;
-use crate::scenario::keys::profiles::ProfileChoice;
-use crate::scenario::keys::shapes::{Outline, Point, Ring};
+use crate::keys::distribution;
+use crate::keys::distribution::Draw;
+use crate::keys::goals::Aim;
+use crate::keys::limits::{HIGHEST_DENSITY, LONGEST_TIME};
+use crate::keys::names::word;
+use crate::keys::profiles::ProfileChoice;
+use crate::keys::shapes::{Outline, Point, Ring};
+use engine::math::Vector;
 
 /// The keys of behavior, which single agents and groups have in common.
 ///

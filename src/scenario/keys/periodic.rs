@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::engine::period::{Axis, Period};
-use crate::scenario::keys::limits::FARTHEST;
-use crate::scenario::keys::names::word;
+use crate::keys::limits::FARTHEST;
+use crate::keys::names::word;
+use engine::period::{Axis, Period};
 
 /// The scene repeats itself along an axis without end. Agents that leave at one end of the period come in at the other,
 /// and everything acts across the ends.

@@ -6,13 +6,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 use serde_untagged::UntaggedEnumVisitor;
 
-use crate::engine::journeys::Journey as Built;
-use crate::scenario::error::quote::shown;
-use crate::scenario::error::{Problem, suggestion};
-use crate::scenario::keys::distribution;
-use crate::scenario::keys::distribution::Draw;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Point, Ring};
+use crate::error::quote::shown;
+use crate::error::{Problem, suggestion};
+use crate::keys::distribution;
+use crate::keys::distribution::Draw;
+use crate::keys::limits::LONGEST_TIME;
+use crate::keys::shapes::{Point, Ring};
+use engine::journeys::Journey as Built;
 
 /// A line at which people leave.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

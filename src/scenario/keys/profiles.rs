@@ -5,9 +5,9 @@ use serde::{Deserialize, Deserializer};
 use serde_json::{Value, json};
 use serde_untagged::UntaggedEnumVisitor;
 
-use crate::scenario::keys::catalog;
-use crate::scenario::keys::catalog::{ALIASES, NavigationKind, Parameters};
-use crate::scenario::keys::limits::HIGHEST_DENSITY;
+use crate::keys::catalog;
+use crate::keys::catalog::{ALIASES, NavigationKind, Parameters};
+use crate::keys::limits::HIGHEST_DENSITY;
 
 /// A name (see `sandbox list`), or a profile or blend defined in full
 #[derive(Debug, Clone, JsonSchema)]

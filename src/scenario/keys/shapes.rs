@@ -6,11 +6,11 @@ use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use serde_untagged::UntaggedEnumVisitor;
 
-use crate::engine::math::Vector;
-use crate::engine::scene::Region;
-use crate::scenario::error::Problem;
-use crate::scenario::floor_plan;
-use crate::scenario::keys::limits::FARTHEST;
+use crate::error::Problem;
+use crate::floor_plan;
+use crate::keys::limits::FARTHEST;
+use engine::math::Vector;
+use engine::scene::Region;
 
 /// A point [x, y] in meters
 #[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]

@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Measure, Observed, Quantity};
-use crate::engine::clock::Clock;
-use crate::engine::simulation::Simulation;
-use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::keys::limits::LONGEST_TIME;
+use engine::clock::Clock;
+use engine::simulation::Simulation;
 
 /// Decimal times are rarely whole frames: a part of a frame.
 const ROUNDING: f64 = 1e-6;

@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 
 use super::window::{MOST_MASS, Window, body_mass};
 use super::{About, Measure, Observed, Quantity};
-use crate::analysis::body_forces::{BodyForces as Seen, PersonForce, THRESHOLDS, WIDTH, pressed};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
+use crate::error::Problem;
+use analysis::body_forces::{BodyForces as Seen, PersonForce, THRESHOLDS, WIDTH, pressed};
+use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
 const NAME: &str = "body_force";

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Measure, Observed, Quantity, is_due};
-use crate::engine::simulation::Simulation;
-use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::keys::limits::LONGEST_TIME;
+use engine::simulation::Simulation;
 
 /// Time between the frames that are measured, seconds.
 const EVERY_SECS: f64 = 0.1;

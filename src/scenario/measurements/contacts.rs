@@ -4,14 +4,14 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Measure, Observed, Quantity};
-use crate::analysis::sound::{self, Contacts};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Corners, region};
+use crate::error::Problem;
+use crate::keys::limits::LONGEST_TIME;
+use crate::keys::shapes::{Corners, region};
+use analysis::sound::{self, Contacts};
+use engine::simulation::Simulation;
 
 /// The mean number of contacts per agent in a region at one time, and their modulus M along x, m²: with it linear
-/// theory gives the speed of sound (see [`crate::analysis::sound`]).
+/// theory gives the speed of sound (see [`analysis::sound`]).
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactsAt {

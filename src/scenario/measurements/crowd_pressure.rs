@@ -5,9 +5,9 @@ use serde::Deserialize;
 
 use super::window::Window;
 use super::{About, Measure, Observed, Quantity};
-use crate::analysis::crowd_pressure::{BEFORE_ACCIDENT, Pressures};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
+use crate::error::Problem;
+use analysis::crowd_pressure::{BEFORE_ACCIDENT, Pressures};
+use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
 const NAME: &str = "crowd_pressure";

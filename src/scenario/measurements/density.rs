@@ -4,12 +4,12 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{About, Measure, Observed, Quantity};
-use crate::analysis::statistics::MeanStd;
-use crate::engine::scene::Region;
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Corners, region};
+use crate::error::Problem;
+use crate::keys::limits::LONGEST_TIME;
+use crate::keys::shapes::{Corners, region};
+use analysis::statistics::MeanStd;
+use engine::scene::Region;
+use engine::simulation::Simulation;
 
 /// Mean and population standard deviation of ρ_i at one time, over all agents or those in a region, P/m².
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

@@ -6,11 +6,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{About, Measure, Observed, Quantity};
-use crate::engine::clock::Clock;
-use crate::engine::journeys::{Kind, Status};
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::engine::ways::{Destination, Goal, PathMap};
+use engine::clock::Clock;
+use engine::journeys::{Kind, Status};
+use engine::math::Vector;
+use engine::simulation::Simulation;
+use engine::ways::{Destination, Goal, PathMap};
 
 /// Of the people on one journey, or on all journeys: how many have left at an exit, the mean time from entry to exit,
 /// the times by which 50 %, 95 % and all have left, the mean wait in queues and waiting areas, that in waiting areas

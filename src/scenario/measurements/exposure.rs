@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 
 use super::window::Window;
 use super::{About, Measure, Observed, Quantity};
-use crate::analysis::exposure::{DENSITIES, Exposed, Exposure as Seen, PersonExposure};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
+use crate::error::Problem;
+use analysis::exposure::{DENSITIES, Exposed, Exposure as Seen, PersonExposure};
+use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
 const NAME: &str = "exposure";

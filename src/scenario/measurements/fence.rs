@@ -1,8 +1,8 @@
 //! An independent check whether a path leads through a wall. It shares no code with the engine whose moves it checks:
 //! not the index of walls, the test for crossings, or the test for points inside.
 
-use crate::engine::geometry::Walls;
-use crate::engine::math::{Vector, bounds, perpendicular};
+use engine::geometry::Walls;
+use engine::math::{Vector, bounds, perpendicular};
 
 /// Walls begin this far inside, meters: the engine stops agents 10⁻⁶ m in front of a wall, and coordinates of 10⁶ m are
 /// rounded to 10⁻¹⁰ m.

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::{Measure, Observed};
-use crate::engine::simulation::{Simulation, Stage};
-use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::keys::limits::LONGEST_TIME;
+use engine::simulation::{Simulation, Stage};
 
 /// The computing time per frame from a given time on, milliseconds, for each stage. It depends on the machine and on
 /// what runs beside it, so it is data rather than a value.

@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::{Measure, Observed, Quantity};
-use crate::analysis::front;
-use crate::analysis::statistics::Estimate;
-use crate::engine::math::{Vector, direction};
-use crate::engine::scene::Region;
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Corners, Point, wide_region};
+use crate::error::Problem;
+use crate::keys::limits::LONGEST_TIME;
+use crate::keys::shapes::{Corners, Point, wide_region};
+use analysis::front;
+use analysis::statistics::Estimate;
+use engine::math::{Vector, direction};
+use engine::scene::Region;
+use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
 const NAME: &str = "front";

@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 
 use super::fence::Fence;
 use super::{Measure, Observed, Quantity};
-use crate::engine::math::{Vector, are_finite};
-use crate::engine::simulation::Simulation;
+use engine::math::{Vector, are_finite};
+use engine::simulation::Simulation;
 
 /// The number of agents that were inside an obstacle or moved through a wall, checked without the engine's own
 /// geometry; the number of frames in which a position, velocity, acceleration or density was not finite; the highest

@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{About, Mean, Measure, Observed, Quantity, is_due};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::error::Problem;
+use crate::keys::limits::LONGEST_TIME;
+use engine::simulation::Simulation;
 
 /// The share of the agents, the least dense ones, that count as the rim of a crowd.
 const RIM: f64 = 0.25;

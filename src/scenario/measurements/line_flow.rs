@@ -6,14 +6,14 @@ use serde_json::{Value, json};
 
 use super::window::walkable_area;
 use super::{Measure, Observed, Quantity};
-use crate::analysis::crossing::{Balance, Line, Passages};
-use crate::engine::clock::Clock;
-use crate::engine::math::Vector;
-use crate::engine::scene::{Region, Scene};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::keys::shapes::{Corners, Point, wide_region};
-use crate::scenario::trajectories::Tracks;
+use crate::error::Problem;
+use crate::keys::shapes::{Corners, Point, wide_region};
+use crate::trajectories::Tracks;
+use analysis::crossing::{Balance, Line, Passages};
+use engine::clock::Clock;
+use engine::math::Vector;
+use engine::scene::{Region, Scene};
+use engine::simulation::Simulation;
 
 /// Values by their names, and data with their name.
 type Measured = (Vec<(String, Option<f64>)>, (String, Value));

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::queues::{EVERY, is_slow, length};
-use crate::engine::journeys::{Queue, Status};
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::engine::ways::nearest_on;
+use super::standing::{EVERY, is_slow, length};
+use engine::journeys::{Queue, Status};
+use engine::math::Vector;
+use engine::simulation::Simulation;
+use engine::ways::nearest_on;
 
 /// Agents that entered less than this ago have just started, seconds.
 const STARTING: f64 = 3.0;

@@ -6,8 +6,8 @@ use super::overview::Overview;
 use super::running::Running;
 use super::stuck::{self, Stuck};
 use super::{HighestDensity, LongestQueue, Measure, Measurement, StuckGroup};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::quote::shown_message;
+use crate::error::quote::shown_message;
+use engine::simulation::Simulation;
 
 /// A measured value.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,9 +3,9 @@
 use std::fmt;
 
 use super::Measurement;
-use crate::engine::math::Vector;
-use crate::engine::scene::Region;
-use crate::scenario::keys::shapes::Corners;
+use crate::keys::shapes::Corners;
+use engine::math::Vector;
+use engine::scene::Region;
 
 /// Where a measurement observes people.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,7 +24,7 @@ impl Observed {
     }
 
     /// The smallest rectangle around it.
-    pub(in crate::scenario) fn bounds(&self) -> Region {
+    pub(crate) fn bounds(&self) -> Region {
         match *self {
             Self::Region(region) => region,
             Self::Line([start, end]) => Region {

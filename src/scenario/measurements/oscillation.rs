@@ -6,12 +6,12 @@ use serde_json::{Value, json};
 
 use super::window::{Samples, Window};
 use super::{About, Measure, Observed, Quantity};
-use crate::analysis::oscillation::{Oscillation as Found, correlation_lengths, speed};
-use crate::engine::scene::Region;
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Corners, wide_region};
+use crate::error::Problem;
+use crate::keys::limits::LONGEST_TIME;
+use crate::keys::shapes::{Corners, wide_region};
+use analysis::oscillation::{Oscillation as Found, correlation_lengths, speed};
+use engine::scene::Region;
+use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
 const NAME: &str = "oscillation";

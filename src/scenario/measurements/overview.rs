@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::is_due;
-use super::queues::{EVERY, LongestQueue, Queues};
+use super::queues::{LongestQueue, Queues};
+use super::standing::EVERY;
 use super::stuck::Headway;
-use crate::engine::kernel;
-use crate::engine::simulation::Simulation;
+use engine::kernel;
+use engine::simulation::Simulation;
 
 /// The highest density of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::stuck::Aim;
-use crate::engine::journeys::Kind;
-use crate::engine::math::Vector;
-use crate::engine::scene::Scene;
-use crate::engine::simulation::Simulation;
-use crate::engine::ways::{Destination, Detour, Narrowings, WIDEST, Ways};
+use engine::journeys::Kind;
+use engine::math::Vector;
+use engine::scene::Scene;
+use engine::simulation::Simulation;
+use engine::ways::{Destination, Detour, Narrowings, WIDEST, Ways};
 
 /// A way through an opening goes on this far behind it, meters.
 const BEYOND: f64 = 1e-3;

@@ -4,13 +4,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Measure, Observed, Quantity, is_due};
-use crate::analysis::push::Pushed;
-use crate::engine::math::{Vector, direction};
-use crate::engine::scene::Scene;
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::keys::shapes::Point;
-use crate::scenario::trajectories::Tracks;
+use crate::error::Problem;
+use crate::keys::shapes::Point;
+use crate::trajectories::Tracks;
+use analysis::push::Pushed;
+use engine::math::{Vector, direction};
+use engine::scene::Scene;
+use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
 const NAME: &str = "push";

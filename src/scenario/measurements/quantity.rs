@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use super::Measurement;
-use crate::scenario::input::embedded;
+use crate::input::embedded;
 
 /// A measurement of each kind that has values, with usual keys.
 const EXAMPLES: &str = include_str!("examples.json");

@@ -10,21 +10,16 @@ use serde::{Deserialize, Serialize};
 
 use super::lines::{Lines, Outside};
 use super::passages::{Crossing, Known, Openings};
+use super::standing::{is_slow, length};
 use super::stuck::{Aim, Headway};
-use crate::analysis::service;
-use crate::analysis::statistics::Range;
-use crate::engine::journeys::{Change, ChangeKind, Journeys, Kind, Place};
-use crate::engine::math::Vector;
-use crate::engine::scene::Scene;
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::quote::{shown, to_centimeters};
+use crate::error::quote::{shown, to_centimeters};
+use analysis::service;
+use analysis::statistics::Range;
+use engine::journeys::{Change, ChangeKind, Journeys, Kind, Place};
+use engine::math::Vector;
+use engine::scene::Scene;
+use engine::simulation::Simulation;
 
-/// An agent stands in a queue if it walks slower than this part of its preferred speed.
-pub const SLOW: f64 = 0.5;
-/// A queue ends where the next agent is farther behind than this along the way, meters.
-pub const GAP: f64 = 3.0;
-/// Time between two observations, seconds.
-pub(super) const EVERY: f64 = 1.0;
 /// The fewest agents in a queue.
 const FEWEST: u32 = 2;
 /// The fewest agents whose density is that of a queue.
@@ -117,7 +112,8 @@ struct Waiting {
 }
 
 impl Queues {
-    /// Observes the queues of a frame with the headways of its agents, by id: once every [`EVERY`] seconds.
+    /// Observes the queues of a frame with the headways of its agents, by id: once every
+    /// [`EVERY`](super::standing::EVERY) seconds.
     pub(super) fn observe(&mut self, headways: &[Option<Headway>], simulation: &Simulation) {
         let openings = self
             .openings
@@ -233,14 +229,6 @@ fn slow(headways: &[Option<Headway>], simulation: &Simulation, openings: &Openin
         })
     });
     walking.collect()
-}
-
-pub(super) fn is_slow(simulation: &Simulation, agent: usize) -> bool {
-    let frame = simulation.frame();
-    let pace = simulation
-        .scene()
-        .pace(frame.agents, agent, frame.clock.time());
-    frame.agents.velocity[agent].norm() < SLOW * pace
 }
 
 /// The slow agents before each passage, the nearest ones first. Queues with a line are passages of their own.
@@ -367,33 +355,5 @@ fn middle(place: &Place) -> Vector {
             corners.iter().sum::<Vector>() / corners.len() as f64
         }
         _ => Vector::zeros(),
-    }
-}
-
-/// The number of agents at these ascending distances, from `start` up to the first gap.
-pub(super) fn length(distances: impl Iterator<Item = f64>, start: f64) -> u32 {
-    let mut before = start;
-    let close = distances.take_while(|&left| {
-        let is_near = left - before <= GAP;
-        before = left;
-        is_near
-    });
-    close.count() as u32
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_queue_begins_at_its_place_and_ends_at_the_first_gap() {
-        let queue = |distances: &[f64], start| length(distances.iter().copied(), start);
-        let all = [0.5, 1.0, 4.0, 7.0, 7.0 + GAP, 7.0 + 2.0 * GAP + 0.1, 20.0];
-        assert_eq!(queue(&all, 0.0), 5);
-        // Nobody stands at the place.
-        assert_eq!(queue(&[GAP + 0.1, GAP + 0.2], 0.0), 0);
-        // Before a goal, the nearest agent is the first.
-        assert_eq!(queue(&[8.0, 8.4, 12.0], 8.0), 2);
-        assert_eq!(queue(&[], 0.0), 0);
     }
 }

@@ -3,8 +3,8 @@
 use serde_json::Value;
 
 use super::{About, Measure, Observed, Quantity};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
+use crate::error::Problem;
+use engine::simulation::Simulation;
 
 /// A measurement during a run, whatever it measures: the methods of [`Measure`].
 pub trait Running: Send + Sync {

@@ -5,9 +5,9 @@ use serde::Deserialize;
 
 use super::window::Window;
 use super::{About, Measure, Observed, Quantity};
-use crate::analysis::service::{LEVELS, Levels};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
+use crate::error::Problem;
+use analysis::service::{LEVELS, Levels};
+use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
 const NAME: &str = "service";

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::{About, Measure, Observed};
-use crate::engine::simulation::Simulation;
-use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::keys::limits::LONGEST_TIME;
+use engine::simulation::Simulation;
 
 /// All agents at one time: positions, radii, speeds and densities.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

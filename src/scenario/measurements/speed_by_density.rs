@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{About, Mean, Measure, Observed, Quantity, is_due};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::error::Problem;
+use crate::keys::limits::LONGEST_TIME;
+use engine::simulation::Simulation;
 
 /// The mean speed of agents with ρ_i in bins 1 P/m² wide, m/s, between two times.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::window::Window;
 use super::{Measure, Observed, Quantity};
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
+use crate::error::Problem;
+use engine::math::Vector;
+use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
 const NAME: &str = "unbalanced";

@@ -6,12 +6,12 @@ use serde_json::{Value, json};
 
 use super::window::walkable_area;
 use super::{Measure, Observed, Quantity};
-use crate::engine::math::Vector;
-use crate::engine::scene::{Region, Scene};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Corners, wide_region};
+use crate::error::Problem;
+use crate::keys::limits::LONGEST_TIME;
+use crate::keys::shapes::{Corners, wide_region};
+use engine::math::Vector;
+use engine::scene::{Region, Scene};
+use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
 const NAME: &str = "walks";

@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 
 use super::window::{MOST_MASS, Samples, body_mass};
 use super::{About, Measure, Observed, Quantity};
-use crate::analysis::wall_forces::{CellForce, WallForces as Seen};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
+use crate::error::Problem;
+use analysis::wall_forces::{CellForce, WallForces as Seen};
+use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
 const NAME: &str = "wall_force";

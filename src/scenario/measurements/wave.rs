@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::{Measure, Observed, Quantity, is_due};
-use crate::analysis::wave::{self, Run, SpaceTime, Strip};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::error::Problem;
+use crate::keys::limits::LONGEST_TIME;
+use analysis::wave::{self, Run, SpaceTime, Strip};
+use engine::simulation::Simulation;
 
 /// The speed at which a wave arrives at an obstacle, m/s, its amplitude, m/s, and how much of it is reflected, found in
-/// the space-time diagram of a strip along x (see [`crate::analysis::wave`]); the diagram itself is its data.
+/// the space-time diagram of a strip along x (see [`analysis::wave`]); the diagram itself is its data.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wave {

@@ -4,15 +4,15 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::is_due;
-use crate::analysis::body_forces::BODY_MASS;
-use crate::analysis::local::{Local, local};
-use crate::engine::geometry::{Area, Ring};
-use crate::engine::scene::{Region, Scene};
-use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::floor_plan::parts_on_floor;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Corners, wide_region};
+use crate::error::Problem;
+use crate::floor_plan::parts_on_floor;
+use crate::keys::limits::LONGEST_TIME;
+use crate::keys::shapes::{Corners, wide_region};
+use analysis::body_forces::BODY_MASS;
+use analysis::local::{Local, local};
+use engine::geometry::{Area, Ring};
+use engine::scene::{Region, Scene};
+use engine::simulation::Simulation;
 
 /// Time between two samples if none is given, seconds.
 fn every() -> f64 {

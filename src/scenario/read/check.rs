@@ -7,30 +7,30 @@ use std::sync::Arc;
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::engine::forces::push::PushForce;
-use crate::engine::geometry::Polygon;
-use crate::engine::math::{Vector, direction};
-use crate::engine::period::Period;
-use crate::engine::profile::Override;
-use crate::engine::scene::{Push, Routing, Scene};
-use crate::scenario::build::need::Need;
-use crate::scenario::build::people::{MOST_NUMBERED, Population};
-use crate::scenario::build::surroundings::Surroundings;
-use crate::scenario::build::{
+use crate::error::{Problem, Under, in_plain_words};
+use crate::file::{File, meant, range};
+use crate::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE};
+use crate::keys::people::{Behavior, People};
+use crate::keys::profiles::{ProfileChoice, ProfileName};
+use crate::keys::shapes::region;
+use crate::read::draft::{Draft, Inputs};
+use crate::read::scenario::Scenario;
+use crate::read::{curves, data, late, plans, preset};
+use crate::scene::need::Need;
+use crate::scene::people::{MOST_NUMBERED, Population};
+use crate::scene::surroundings::Surroundings;
+use crate::scene::{
     doubts, journeys, numerics, off_floor, overcrowded, periodic, profiles, slits, surroundings,
     view, ways,
 };
-use crate::scenario::error::{Problem, Under, in_plain_words};
-use crate::scenario::file::{File, meant, range};
-use crate::scenario::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE};
-use crate::scenario::keys::people::{Behavior, People};
-use crate::scenario::keys::profiles::{ProfileChoice, ProfileName};
-use crate::scenario::keys::shapes::region;
-use crate::scenario::read::draft::{Draft, Inputs};
-use crate::scenario::read::scenario::Scenario;
-use crate::scenario::read::{curves, data, late, plans, preset};
-use crate::scenario::trajectories::Tracks;
-use crate::scenario::{file, measurements};
+use crate::trajectories::Tracks;
+use crate::{file, measurements};
+use engine::forces::push::PushForce;
+use engine::geometry::Polygon;
+use engine::math::{Vector, direction};
+use engine::period::Period;
+use engine::profile::Override;
+use engine::scene::{Push, Routing, Scene};
 
 impl Draft {
     /// Reads `document`, and the files that it names from the folder of `path`.

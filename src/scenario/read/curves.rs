@@ -4,10 +4,10 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::scenario::error::quote::shown;
-use crate::scenario::error::{Problem, Under};
-use crate::scenario::input;
-use crate::scenario::read::plans::PlanFile;
+use crate::error::quote::shown;
+use crate::error::{Problem, Under};
+use crate::input;
+use crate::read::plans::PlanFile;
 
 /// The key of events that may name a file.
 const KEY: &str = "acceleration";

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::scenario::error::quote::{shown, shown_message};
-use crate::scenario::error::{Problem, Under};
-use crate::scenario::file::File;
-use crate::scenario::keys::from::{FILE, FROM, FromData, Person};
-use crate::scenario::read::plans::PlanFile;
-use crate::scenario::trajectories::{ReadOptions, TOO_FAST, Tracks, read};
+use crate::error::quote::{shown, shown_message};
+use crate::error::{Problem, Under};
+use crate::file::File;
+use crate::keys::from::{FILE, FROM, FromData, Person};
+use crate::read::plans::PlanFile;
+use crate::trajectories::{ReadOptions, TOO_FAST, Tracks, read};
 
 /// Velocities are means from this long before to this long after, seconds, as in the measurement `line_flow`.
 const REACH: f64 = 0.2;

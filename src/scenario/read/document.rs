@@ -5,9 +5,9 @@ use std::fmt;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
-use crate::scenario::error::quote::shown;
-use crate::scenario::error::{Problem, ScenarioError, Under, hints, in_plain_words};
-use crate::scenario::keys::names::{OLD_KEYS, OldKey};
+use crate::error::quote::shown;
+use crate::error::{Problem, ScenarioError, Under, hints, in_plain_words};
+use crate::keys::names::{OLD_KEYS, OldKey};
 
 /// Gives the last key of a path in a document its present name.
 pub fn rename_last(path: &mut [String]) {

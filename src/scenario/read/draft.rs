@@ -4,16 +4,16 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::scenario::build::need::Need;
-use crate::scenario::error::kinds;
-use crate::scenario::error::numbers::tidy;
-use crate::scenario::error::{Problem, ScenarioError};
-use crate::scenario::file::File;
-use crate::scenario::read::plans::PlanFile;
-use crate::scenario::read::scenario::Scenario;
-use crate::scenario::read::setting::Setting;
-use crate::scenario::read::{document, late, plans};
-use crate::scenario::trajectories::Tracks;
+use crate::error::kinds;
+use crate::error::numbers::tidy;
+use crate::error::{Problem, ScenarioError};
+use crate::file::File;
+use crate::read::plans::PlanFile;
+use crate::read::scenario::Scenario;
+use crate::read::setting::Setting;
+use crate::read::{document, late, plans};
+use crate::scene::need::Need;
+use crate::trajectories::Tracks;
 
 /// A scenario whose names, types and ranges are valid. Relations between values are not checked yet.
 #[derive(Debug, Clone)]

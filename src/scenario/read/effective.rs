@@ -2,12 +2,12 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::scenario::file::File;
-use crate::scenario::file::schema::property;
-use crate::scenario::keys::calibrated;
-use crate::scenario::keys::catalog::Parameters;
-use crate::scenario::keys::names::names;
-use crate::scenario::read::scenario::Scenario;
+use crate::file::File;
+use crate::file::schema::property;
+use crate::keys::calibrated;
+use crate::keys::catalog::Parameters;
+use crate::keys::names::names;
+use crate::read::scenario::Scenario;
 
 impl Scenario {
     /// The [`document`](Scenario::document) with the defaults of the keys that it lacks, and the parameters of its

@@ -3,13 +3,13 @@
 
 use serde_json::Value;
 
-use crate::engine::agents::NewAgent;
-use crate::engine::entrance::Entrance;
-use crate::engine::journeys::{Kind, Place};
-use crate::engine::random::Purpose;
-use crate::engine::scene::Scene;
-use crate::scenario::error::numbers::brief;
-use crate::scenario::error::quote::shown;
+use crate::error::numbers::brief;
+use crate::error::quote::shown;
+use engine::agents::NewAgent;
+use engine::entrance::Entrance;
+use engine::journeys::{Kind, Place};
+use engine::random::Purpose;
+use engine::scene::Scene;
 
 /// Lists, and the keys of their elements that say when something begins, or people go on.
 const BEGIN: [(&str, &str); 4] = [

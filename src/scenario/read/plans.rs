@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use crate::engine::geometry::{Area, Ring};
-use crate::scenario::build::surroundings::{OBSTACLES, WALKABLE_AREA, problem};
-use crate::scenario::error::Problem;
-use crate::scenario::error::quote::shown;
-use crate::scenario::floor_plan;
-use crate::scenario::floor_plan::{FloorPlan, Label};
-use crate::scenario::read::setting::Setting;
+use crate::error::Problem;
+use crate::error::quote::shown;
+use crate::floor_plan;
+use crate::floor_plan::{FloorPlan, Label};
+use crate::read::setting::Setting;
+use crate::scene::surroundings::{OBSTACLES, WALKABLE_AREA, problem};
+use engine::geometry::{Area, Ring};
 
 /// The keys that may name a file.
 pub const KEYS: [&str; 2] = [WALKABLE_AREA, OBSTACLES];

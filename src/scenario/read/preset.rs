@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::scenario::keys::preset::Preset;
+use crate::keys::preset::Preset;
 
 /// The document with its preset's values for the keys that it does not give.
 pub fn completed(mut document: Value) -> Value {

@@ -5,20 +5,20 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::engine::scene::Scene;
-use crate::engine::ways::Ways;
-use crate::scenario::build::view::View;
-use crate::scenario::build::ways;
-use crate::scenario::error::ScenarioError;
-use crate::scenario::file::Stop;
-use crate::scenario::floor_plan::Label;
-use crate::scenario::input;
-use crate::scenario::measurements::Measurement;
-use crate::scenario::read::document;
-use crate::scenario::read::draft::Draft;
-use crate::scenario::read::plans::PlanFile;
-use crate::scenario::read::setting::Setting;
-use crate::scenario::read::shipped::SHIPPED;
+use crate::error::ScenarioError;
+use crate::file::Stop;
+use crate::floor_plan::Label;
+use crate::input;
+use crate::measurements::Measurement;
+use crate::read::document;
+use crate::read::draft::Draft;
+use crate::read::plans::PlanFile;
+use crate::read::setting::Setting;
+use crate::read::shipped::SHIPPED;
+use crate::scene::view::View;
+use crate::scene::ways;
+use engine::scene::Scene;
+use engine::ways::Ways;
 
 /// A checked scenario: what to simulate, for how long, and what to measure and show.
 #[derive(Debug, Clone)]

@@ -4,10 +4,10 @@ use std::str::FromStr;
 
 use serde_json::{Value, json};
 
-use crate::scenario::error::quote::shown;
-use crate::scenario::error::{Problem, ScenarioError, suggestion};
-use crate::scenario::file::listed::{is_parameter, is_setting, is_text, may_be_empty, settings};
-use crate::scenario::read::document::rename_last;
+use crate::error::quote::shown;
+use crate::error::{Problem, ScenarioError, suggestion};
+use crate::file::listed::{is_parameter, is_setting, is_text, may_be_empty, settings};
+use crate::read::document::rename_last;
 
 /// A change: `viscosity=5`, `seed=7`, `profile=sf`, `sources.0.rows=50`.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use include_dir::{Dir, include_dir};
 use serde_json::Value;
 
-use crate::scenario::input::embedded;
+use crate::input::embedded;
 
 /// The folder `scenarios/`.
 static FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios");

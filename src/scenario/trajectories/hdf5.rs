@@ -2,7 +2,7 @@
 //! `x` and `y`, its attribute `fps`, and the walkable area in the attribute `wkt_geometry` of the file. The only file
 //! that names hdf5_pure.
 
-use crate::scenario::error::quote::{shown, shown_message};
+use crate::error::quote::{shown, shown_message};
 use std::path::Path;
 
 use hdf5_pure::{AttrValue, CompoundMember, Dataset, Datatype, DatatypeByteOrder, File};
@@ -10,7 +10,7 @@ use hdf5_pure::{AttrValue, CompoundMember, Dataset, Datatype, DatatypeByteOrder,
 use super::error::ReadError;
 use super::tracks::{Contents, Entry, Tracks};
 use super::{ReadOptions, Unit, frame_rate};
-use crate::engine::math::Vector;
+use engine::math::Vector;
 
 /// Rows that are decoded at a time.
 const ROWS: u64 = 1 << 16;

@@ -2,8 +2,8 @@
 
 use super::Unit;
 use super::tracks::Entry;
-use crate::engine::math::Vector;
-use crate::scenario::error::quote::shown;
+use crate::error::quote::shown;
+use engine::math::Vector;
 
 /// Known names of the columns, in lower case; the first is ours.
 const IDS: [&str; 5] = ["id", "persid", "personid", "ped_id", "pid"];

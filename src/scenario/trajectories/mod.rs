@@ -9,7 +9,7 @@
 //!
 //! Results are in meters and seconds. Frame f is at the time f / fps.
 
-use crate::scenario::error::quote::shown;
+use crate::error::quote::shown;
 mod columns;
 mod error;
 #[cfg(feature = "program")]

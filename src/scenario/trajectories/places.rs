@@ -1,7 +1,7 @@
 //! Places and velocities between frames.
 
 use super::Tracks;
-use crate::engine::math::Vector;
+use engine::math::Vector;
 
 impl Tracks {
     /// Times this near to each other are the same, seconds: decimal times are rarely exact multiples of a frame's.

@@ -1,6 +1,6 @@
 //! Reads the SQLite files of JuPedSim, versions 1 and 2, and of the sandbox.
 
-use crate::scenario::error::quote::shown_message;
+use crate::error::quote::shown_message;
 use std::path::Path;
 
 use rusqlite::types::ValueRef;
@@ -9,7 +9,7 @@ use rusqlite::{Connection, OpenFlags, Row};
 use super::error::ReadError;
 use super::tracks::{Contents, Entry, Tracks};
 use super::{ReadOptions, Unit, frame_rate};
-use crate::engine::math::Vector;
+use engine::math::Vector;
 
 /// A row takes at least this many bytes of a file: its cell pointer, its length, its rowid and a type per column.
 const LEAST_ROW: u64 = 8;

@@ -1,7 +1,7 @@
 //! Reads text: columns separated by blanks or tabs below comments, or CSV below a header.
 
-use crate::scenario::input;
-use crate::scenario::input::Lines;
+use crate::input;
+use crate::input::Lines;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 

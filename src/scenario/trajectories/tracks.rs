@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::error::ReadError;
 use super::{ReadOptions, Unit};
-use crate::engine::math::Vector;
+use engine::math::Vector;
 
 /// If the median speed is above this, m/s, the unit is probably wrong.
 pub const TOO_FAST: f64 = 10.0;

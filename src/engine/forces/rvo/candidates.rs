@@ -5,9 +5,9 @@
 use rand::RngCore;
 
 use super::{Situation, floor};
-use crate::engine::math::{Vector, unit_vector};
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{
+use crate::math::{Vector, unit_vector};
+use crate::pairs::prelude::*;
+use crate::pairs::{
     LANES, Level, Simd, dispatch, f64x8, first_lanes, mask32x8, mask64x8, u8x64, u32x8,
 };
 

@@ -1,9 +1,9 @@
 //! Moving discs in single precision, packed in columns.
 
-use crate::engine::math::Vector;
-use crate::engine::neighbors::{Neighbors, Run};
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{LANES, Simd, f32x8, f64x8, mask32x8, u32x8};
+use crate::math::Vector;
+use crate::neighbors::{Neighbors, Run};
+use crate::pairs::prelude::*;
+use crate::pairs::{LANES, Simd, f32x8, f64x8, mask32x8, u32x8};
 
 /// Eight discs in double precision.
 pub struct Eight<S: Simd> {

@@ -2,9 +2,9 @@
 
 use super::discs::{Discs, Packed};
 use super::surroundings::{Limits, Surroundings};
-use crate::engine::math::Vector;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{LANES, Simd, f32x8, first_lanes};
+use crate::math::Vector;
+use crate::pairs::prelude::*;
+use crate::pairs::{LANES, Simd, f32x8, first_lanes};
 
 /// The number of rings, and the squared distances at which they begin, m²; the last ring is unbounded.
 const RINGS: usize = 4;

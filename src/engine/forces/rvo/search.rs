@@ -6,8 +6,8 @@ use super::candidates::{Candidates, Sorted};
 use super::rings::{Appear, Rings};
 use super::surroundings::Surroundings;
 use super::{Situation, time_to_contact};
-use crate::engine::math::Vector;
-use crate::engine::pairs::{Level, Simd, dispatch};
+use crate::math::Vector;
+use crate::pairs::{Level, Simd, dispatch};
 
 /// Safety margin far above the rounding errors of deviations and times, so that no bound excludes a candidate
 /// that could be best.

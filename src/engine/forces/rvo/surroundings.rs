@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use super::discs::{Discs, Eight};
-use crate::engine::agents::Agents;
-use crate::engine::frame::Frame;
-use crate::engine::math::{Vector, greatest};
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{LANES, Simd, coordinates, f64x8, first_lanes};
+use crate::agents::Agents;
+use crate::frame::Frame;
+use crate::math::{Vector, greatest};
+use crate::pairs::prelude::*;
+use crate::pairs::{LANES, Simd, coordinates, f64x8, first_lanes};
 
 /// A moving disc, relative to agent i.
 #[derive(Debug, Clone, Copy, PartialEq)]

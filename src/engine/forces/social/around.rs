@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::cutoff::Cutoff;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Bodies, Lanes, Mask, Real, Simd, first_lanes, load, splat, spread};
+use crate::pairs::prelude::*;
+use crate::pairs::{Bodies, Lanes, Mask, Real, Simd, first_lanes, load, splat, spread};
 
 /// More than the rounding errors of lengths, relative to the largest length, and of velocities.
 const ROUNDING: f64 = 2e-6;

@@ -6,9 +6,9 @@ use super::SocialForce;
 use super::cutoff::Cutoff;
 use super::near::{Near, grow};
 use super::sum::{Feeling, Pairs};
-use crate::engine::math::Vector;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{
+use crate::math::Vector;
+use crate::pairs::prelude::*;
+use crate::pairs::{
     Bodies, LANES, Lanes, Real, Simd, first_lanes, load, seen_from, splat, spread, store,
 };
 

@@ -1,8 +1,8 @@
 //! Which pairs are left out: their force is certainly below the tolerance.
 
 use super::SocialForce;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Lanes, Mask, Real, Simd, splat};
+use crate::pairs::prelude::*;
+use crate::pairs::{Lanes, Mask, Real, Simd, splat};
 
 /// The largest ratio of |d| and |a|, either way, of a pair that is left out, and the factor (√q + 1/√q)/2 of its force.
 const LARGEST_RATIO: f64 = 4.0;

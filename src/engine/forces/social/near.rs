@@ -6,9 +6,9 @@ use super::SocialForce;
 use super::around::Around;
 use super::cutoff::Cutoff;
 use super::sum::{Feeling, Pairs};
-use crate::engine::neighbors::Run;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{
+use crate::neighbors::Run;
+use crate::pairs::prelude::*;
+use crate::pairs::{
     Bodies, LANES, Lanes, Real, Simd, first_lanes, load, seen_from, splat, spread, store,
 };
 

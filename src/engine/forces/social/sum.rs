@@ -5,8 +5,8 @@
 use std::f64::consts::{LN_2, SQRT_2};
 
 use super::{FIELD_OF_VIEW, SocialForce, UNSEEN_WEIGHT};
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Lanes, Mask, Real, Simd, splat};
+use crate::pairs::prelude::*;
+use crate::pairs::{Lanes, Mask, Real, Simd, splat};
 
 /// A sequence of pairs, eight at a time.
 pub trait Pairs<R: Real, S: Simd> {

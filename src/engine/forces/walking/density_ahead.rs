@@ -18,10 +18,10 @@ use schemars::JsonSchema;
 
 use super::Walkers;
 use super::headway::AGAINST;
-use crate::engine::forces::rates::{Extremes, Rates};
-use crate::engine::neighbors::Run;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
+use crate::forces::rates::{Extremes, Rates};
+use crate::neighbors::Run;
+use crate::pairs::prelude::*;
+use crate::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
 
 /// Parameters of the law of the density ahead.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]

@@ -7,9 +7,9 @@
 
 use schemars::JsonSchema;
 
-use crate::engine::forces::rates::{Extremes, Rates};
-use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
+use crate::forces::rates::{Extremes, Rates};
+use crate::frame::Frame;
+use crate::math::Vector;
 
 /// Parameters of the drag.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]

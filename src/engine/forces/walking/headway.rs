@@ -17,10 +17,10 @@ use std::ops::Range;
 use schemars::JsonSchema;
 
 use super::{FADE, Motions, ROUNDING, View, Walkers};
-use crate::engine::forces::rates::Rates;
-use crate::engine::neighbors::Run;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat};
+use crate::forces::rates::Rates;
+use crate::neighbors::Run;
+use crate::pairs::prelude::*;
+use crate::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat};
 
 /// Parameters of the headway law.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]

@@ -31,11 +31,11 @@ use std::ops::Range;
 use headings::{COUNT, STRAIGHT};
 use walkers::{Motions, ROUNDING, View, Walkers};
 
-use crate::engine::forces::rates::{Extremes, Rates};
-use crate::engine::frame::Frame;
-use crate::engine::math::{Vector, direction};
-use crate::engine::neighbors::BLOCK;
-use crate::engine::pairs::{Bodies, LANES, Level, Real, Simd, dispatch, each, store};
+use crate::forces::rates::{Extremes, Rates};
+use crate::frame::Frame;
+use crate::math::{Vector, direction};
+use crate::neighbors::BLOCK;
+use crate::pairs::{Bodies, LANES, Level, Real, Simd, dispatch, each, store};
 
 /// The walking law of a profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,7 +67,7 @@ pub struct Due {
 pub struct Decided<'a> {
     /// The speeds at which they may walk, m/s; infinite without agents in view.
     pub allowed: &'a mut [Option<f64>],
-    /// The headings that they follow, as [`Agents::heading`](crate::engine::agents::Agents::heading); empty if no agent
+    /// The headings that they follow, as [`Agents::heading`](crate::agents::Agents::heading); empty if no agent
     /// chooses one.
     pub heading: &'a mut [i8],
 }

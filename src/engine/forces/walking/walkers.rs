@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
-use crate::engine::neighbors::Run;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Bodies, LANES, Lanes, Real, Simd, lanes_from, splat, spread, store};
+use crate::frame::Frame;
+use crate::math::Vector;
+use crate::neighbors::Run;
+use crate::pairs::prelude::*;
+use crate::pairs::{Bodies, LANES, Lanes, Real, Simd, lanes_from, splat, spread, store};
 
 /// More than the rounding error of d² in single precision, relative to it.
 pub(super) const ROUNDING: f64 = 1.0 + 1e-5;

@@ -6,17 +6,17 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::Undone;
-use crate::engine::forces::rvo::{Scratch, Wish};
-use crate::engine::forces::walking::{Decided, Due, Headway, WalkingLaw};
-use crate::engine::geometry::{Area, Ring};
-use crate::engine::math::{Vector, bounds};
-use crate::engine::neighbors::{BLOCK, Lists, Neighbors, TASK};
-use crate::engine::pairs::Packed;
-use crate::engine::simulation::{Simulation, StageTimes};
-use crate::engine::ways::{Floor, Route, Ways};
-use crate::lab::bench::timing::{failed, ms_of, warmed};
-use crate::lab::error::LabError;
-use crate::scenario::measurements::{Integrity, Measure, Watched};
+use crate::bench::timing::{failed, ms_of, warmed};
+use crate::error::LabError;
+use engine::forces::rvo::{Scratch, Wish};
+use engine::forces::walking::{Decided, Due, Headway, WalkingLaw};
+use engine::geometry::{Area, Ring};
+use engine::math::{Vector, bounds};
+use engine::neighbors::{BLOCK, Lists, Neighbors, TASK};
+use engine::pairs::Packed;
+use engine::simulation::{Simulation, StageTimes};
+use engine::ways::{Floor, Route, Ways};
+use scenario::measurements::{Integrity, Measure, Watched};
 
 /// Does the work for an evaluated frame, and returns the seconds that it took.
 pub type Work = Box<dyn FnMut(&Simulation) -> f64 + Send>;

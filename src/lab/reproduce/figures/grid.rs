@@ -3,11 +3,11 @@
 use serde_json::Value;
 
 use super::super::product::{Needs, Product, save};
-use crate::analysis::statistics::{Estimate, Range};
-use crate::lab::gallery::{distinct, in_cell, map};
-use crate::lab::sweep::{Combination, Gathered};
-use crate::output::colors::ColorMap;
-use crate::output::plot::{Axis, ColorBar, Panel, Sheet};
+use crate::gallery::{distinct, in_cell, map};
+use crate::sweep::{Combination, Gathered};
+use analysis::statistics::{Estimate, Range};
+use output::colors::ColorMap;
+use output::plot::{Axis, ColorBar, Panel, Sheet};
 
 /// The study; not part of `all`.
 pub const PRODUCT: Product = Product {

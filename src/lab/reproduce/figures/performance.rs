@@ -1,11 +1,11 @@
 //! Fig. 11: frame time per task against the number of agents.
 
 use super::super::product::{Needs, Product, save};
-use crate::engine::simulation::Stage;
-use crate::lab::error::LabError;
-use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Sheet, Style, line_color};
-use crate::output::table::Table;
-use crate::scenario::measurements::{FrameTime, StageTimes};
+use crate::error::LabError;
+use engine::simulation::Stage;
+use output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Sheet, Style, line_color};
+use output::table::Table;
+use scenario::measurements::{FrameTime, StageTimes};
 
 /// The figure.
 pub const PRODUCT: Product = Product {

@@ -3,12 +3,12 @@
 use std::sync::LazyLock;
 
 use super::super::product::save;
-use crate::lab::error::LabError;
-use crate::lab::sweep::Gathered;
-use crate::output::colors::{self, ColorMap};
-use crate::output::plot::{Axis, ColorBar, Disc, GRAY, Mark, Panel, Sheet, Style};
-use crate::runs::store::Store;
-use crate::scenario::measurements::Snapshot;
+use crate::error::LabError;
+use crate::sweep::Gathered;
+use output::colors::{self, ColorMap};
+use output::plot::{Axis, ColorBar, Disc, GRAY, Mark, Panel, Sheet, Style};
+use runs::store::Store;
+use scenario::measurements::Snapshot;
 
 /// Inferno up to 1 m/s: the push itself reaches 0.9 m/s.
 static WAVE_SPEED: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::inferno([0.0, 1.0]));

@@ -1,16 +1,16 @@
 //! An addition to Fig. 7: the wave over space and time for several k, and its speed against linear theory.
 
 use super::super::product::{Needs, Product, save};
-use crate::analysis::sound;
-use crate::analysis::statistics::Estimate;
-use crate::analysis::wave::{Ridge, Wave};
-use crate::lab::error::LabError;
-use crate::lab::gallery::points;
-use crate::lab::sweep::Gathered;
-use crate::output::colors::ColorMap;
-use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Sheet, Style};
-use crate::output::table::Table;
-use crate::scenario::measurements::WaveData;
+use crate::error::LabError;
+use crate::gallery::points;
+use crate::sweep::Gathered;
+use analysis::sound;
+use analysis::statistics::Estimate;
+use analysis::wave::{Ridge, Wave};
+use output::colors::ColorMap;
+use output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Sheet, Style};
+use output::table::Table;
+use scenario::measurements::WaveData;
 
 /// K^ag of the baseline (§5.5).
 const AGENT_STIFFNESS: f64 = 50.0;

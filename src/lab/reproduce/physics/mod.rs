@@ -18,13 +18,13 @@ pub use start_waves::PRODUCT as START_WAVES;
 pub use swaying::{PRODUCT as SWAYING, RATES as SWAYING_RATES};
 
 use super::product::save;
-use crate::analysis::statistics::{Estimate, MeanStd};
-use crate::lab::error::LabError;
-use crate::lab::gallery::distinct;
-use crate::lab::sweep::{Combination, Gathered};
-use crate::output::plot::Sheet;
-use crate::output::table::Table;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::gallery::distinct;
+use crate::sweep::{Combination, Gathered};
+use analysis::statistics::{Estimate, MeanStd};
+use output::plot::Sheet;
+use output::table::Table;
+use runs::store::Store;
 
 /// Writes a table and a picture about the only study of a product, and returns the table.
 fn write(

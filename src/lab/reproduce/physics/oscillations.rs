@@ -2,11 +2,11 @@
 
 use super::super::product::{Needs, Product};
 use super::{first, grouped, mean, profile, write};
-use crate::analysis::oscillation::Oscillation;
-use crate::lab::gallery::{BAND, with_legend};
-use crate::lab::sweep::Combination;
-use crate::output::plot::{Axis, Mark, Panel, Sheet, Style};
-use crate::output::table::Table;
+use crate::gallery::{BAND, with_legend};
+use crate::sweep::Combination;
+use analysis::oscillation::Oscillation;
+use output::plot::{Axis, Mark, Panel, Sheet, Style};
+use output::table::Table;
 
 /// The measured angular frequency of crowds above 4 P/m² (Gu et al. 2025), rad/s.
 const MEASURED: [f64; 2] = [0.30, 0.40];

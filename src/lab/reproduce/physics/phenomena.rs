@@ -2,11 +2,11 @@
 
 use super::super::product::{Needs, Product, save};
 use super::{oscillations, queue_pushes, start_waves, swaying};
-use crate::lab::error::LabError;
-use crate::lab::gallery::with_legend;
-use crate::lab::sweep::Gathered;
-use crate::output::plot::Sheet;
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::gallery::with_legend;
+use crate::sweep::Gathered;
+use output::plot::Sheet;
+use runs::store::Store;
 
 /// The picture. Its panels are those of the single questions.
 pub const PRODUCT: Product = Product {

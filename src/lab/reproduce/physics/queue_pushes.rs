@@ -2,13 +2,13 @@
 
 use super::super::product::{Needs, Product};
 use super::{first, front_speed, grouped, mean, profile, write};
-use crate::analysis::sound::speed_of_fluid;
-use crate::analysis::statistics::Estimate;
-use crate::lab::gallery::{curve, points};
-use crate::lab::sweep::Combination;
-use crate::output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style};
-use crate::output::table::Table;
-use crate::scenario::measurements::FrontData;
+use crate::gallery::{curve, points};
+use crate::sweep::Combination;
+use analysis::sound::speed_of_fluid;
+use analysis::statistics::Estimate;
+use output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style};
+use output::table::Table;
+use scenario::measurements::FrontData;
 
 /// k of the paper's profiles.
 const GAS_CONSTANT: f64 = 200.0;

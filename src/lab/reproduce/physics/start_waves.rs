@@ -2,11 +2,11 @@
 
 use super::super::product::{Needs, Product};
 use super::{first, front_speed, grouped, mean, profile, write};
-use crate::lab::gallery::points;
-use crate::lab::sweep::Combination;
-use crate::output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
-use crate::output::table::Table;
-use crate::scenario::measurements::FrontData;
+use crate::gallery::points;
+use crate::sweep::Combination;
+use output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
+use output::table::Table;
+use scenario::measurements::FrontData;
 
 /// The length that people wait on, meters.
 const LENGTH: f64 = 30.0;

@@ -2,16 +2,14 @@
 
 use super::super::product::{Needs, Product, save};
 use super::{grouped, mean};
-use crate::analysis::statistics::Estimate;
-use crate::lab::error::LabError;
-use crate::lab::gallery::{BAND, curve, distinct, in_cell, map, points};
-use crate::lab::sweep::{Combination, Gathered};
-use crate::output::colors::ColorMap;
-use crate::output::plot::{
-    Axis, BLACK, ColorBar, Corner, Mark, Panel, Point, Sheet, Style, line_color,
-};
-use crate::output::table::{Cell, Table};
-use crate::runs::store::Store;
+use crate::error::LabError;
+use crate::gallery::{BAND, curve, distinct, in_cell, map, points};
+use crate::sweep::{Combination, Gathered};
+use analysis::statistics::Estimate;
+use output::colors::ColorMap;
+use output::plot::{Axis, BLACK, ColorBar, Corner, Mark, Panel, Point, Sheet, Style, line_color};
+use output::table::{Cell, Table};
+use runs::store::Store;
 
 /// What Gu et al. (2025) filmed on 50 m × 20 m: the density from which on people turn, P/m², the angular frequency with
 /// its uncertainty, rad/s, and a distance over which they turn together, meters.

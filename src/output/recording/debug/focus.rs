@@ -18,12 +18,12 @@ use rerun::{
 use super::Open;
 use super::arrows::{self, TOTAL};
 use super::layers::{HIDDEN, LINK, NEAREST, REPRESENTATIVE, WAY};
-use crate::engine::math::Vector;
-use crate::engine::profile::Term;
-use crate::engine::scene::Region;
-use crate::output::colors::Rgb;
-use crate::output::recording::draw::{Point, color, px, texts, xy, y_up};
-use crate::output::recording::error::Cause;
+use crate::colors::Rgb;
+use crate::recording::draw::{Point, color, px, texts, xy, y_up};
+use crate::recording::error::Cause;
+use engine::math::Vector;
+use engine::profile::Term;
+use engine::scene::Region;
 
 /// Half the side of the view around an agent, meters.
 pub const REACH: f64 = 2.5;

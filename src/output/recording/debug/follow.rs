@@ -1,8 +1,8 @@
 //! Which debug agents have views of their own, and which moment a recording opens at.
 
 use super::DebugAgents;
-use crate::engine::simulation::Simulation;
-use crate::output::recording::frame::Snapshot;
+use crate::recording::frame::Snapshot;
+use engine::simulation::Simulation;
 
 /// The most agents with views of their own.
 const MOST: usize = 12;

@@ -7,13 +7,13 @@ pub mod layers;
 pub mod moment;
 
 use super::draw::{Point, xy};
-use crate::engine::breakdown::Breakdown;
-use crate::engine::geometry::HiddenRegion;
-use crate::engine::math::Vector;
-use crate::engine::profile::Term;
-use crate::engine::scene::{Region, Scene};
-use crate::engine::simulation::Simulation;
-use crate::output::colors::Rgb;
+use crate::colors::Rgb;
+use engine::breakdown::Breakdown;
+use engine::geometry::HiddenRegion;
+use engine::math::Vector;
+use engine::profile::Term;
+use engine::scene::{Region, Scene};
+use engine::simulation::Simulation;
 
 /// Number of segments of an arc in the outline of a hidden region.
 const ARC_STEPS: usize = 24;
@@ -33,7 +33,7 @@ pub enum DebugAgents {
 
 impl DebugAgents {
     /// Whether agent `i` of the current frame is a debug agent.
-    pub(in crate::output::recording) fn includes(&self, simulation: &Simulation, i: usize) -> bool {
+    pub(in crate::recording) fn includes(&self, simulation: &Simulation, i: usize) -> bool {
         let agents = simulation.frame().agents;
         if !agents.is_present(i) {
             return false;
@@ -48,7 +48,7 @@ impl DebugAgents {
 
     /// The breakdowns of the debug agents in the current frame, and of the agents `also` that are present, in the order
     /// of their ids; empty if the frame has no densities.
-    pub(in crate::output::recording) fn open(
+    pub(in crate::recording) fn open(
         &self,
         simulation: &Simulation,
         also: &[Option<u32>],

@@ -3,9 +3,9 @@
 use rerun::{RecordingStream, TextDocument};
 
 use super::Open;
-use crate::engine::breakdown::Breakdown;
-use crate::engine::math::Vector;
-use crate::output::recording::error::Cause;
+use crate::recording::error::Cause;
+use engine::breakdown::Breakdown;
+use engine::math::Vector;
 
 /// The most neighbors and walls in a table.
 const MOST_ROWS: usize = 20;

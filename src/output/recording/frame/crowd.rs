@@ -10,10 +10,10 @@ use rerun::external::arrow::datatypes::{ArrowPrimitiveType, Float16Type};
 use rerun::{AsComponents, Color, DynamicArchetype, Points2D, Radius, RecordingStream};
 
 use super::Snapshot;
-use crate::output::colors::ColorMap;
-use crate::output::recording::draw::color;
-use crate::output::recording::error::Cause;
-use crate::output::recording::options::RecordingOptions;
+use crate::colors::ColorMap;
+use crate::recording::draw::color;
+use crate::recording::error::Cause;
+use crate::recording::options::RecordingOptions;
 
 type F16 = <Float16Type as ArrowPrimitiveType>::Native;
 

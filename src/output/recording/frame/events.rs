@@ -3,8 +3,8 @@
 use rerun::{RecordingStream, TextLog};
 
 use super::set_time;
-use crate::output::events::Line;
-use crate::output::recording::error::Cause;
+use crate::events::Line;
+use crate::recording::error::Cause;
 
 /// The entity of the log.
 pub const ENTITY: &str = "log";

@@ -9,12 +9,12 @@ use rerun::{EntityPath, RecordingStream};
 
 use super::debug::{DebugAgents, Open};
 use super::draw::{Point, xy};
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::output::colors::Rgb;
-use crate::output::events::Line;
-use crate::output::scenery::stage_color;
+use crate::colors::Rgb;
+use crate::events::Line;
+use crate::scenery::stage_color;
 use colored_lines::{ColoredLines, LEANS, Part, WAITS};
+use engine::math::Vector;
+use engine::simulation::Simulation;
 
 /// The timelines.
 pub const FRAME: &str = "frame";

@@ -3,13 +3,13 @@
 use rerun::{EntityPath, RecordingStream, Scalars, entity_path};
 
 use super::Snapshot;
-use crate::analysis::statistics::MeanStd;
-use crate::engine::journeys::Place;
-use crate::engine::scene::Scene;
-use crate::engine::simulation::Simulation;
-use crate::output::recording::draw::log_series;
-use crate::output::recording::error::Cause;
-use crate::output::series::{self, CROWD, Count};
+use crate::recording::draw::log_series;
+use crate::recording::error::Cause;
+use crate::series::{self, CROWD, Count};
+use analysis::statistics::MeanStd;
+use engine::journeys::Place;
+use engine::scene::Scene;
+use engine::simulation::Simulation;
 
 /// The time series of places: agents in queues and waiting areas, and agents that have passed exits.
 pub const PRESENT: &str = "present";

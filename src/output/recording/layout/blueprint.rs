@@ -5,9 +5,9 @@ use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKin
 use rerun::{RecordingStream, RecordingStreamBuilder};
 
 use super::{Content, Opening, layout};
-use crate::output::recording::error::Cause;
-use crate::output::recording::options::RecordingOptions;
-use crate::output::recording::stream::application;
+use crate::recording::error::Cause;
+use crate::recording::options::RecordingOptions;
+use crate::recording::stream::application;
 
 /// Sends the default blueprint.
 pub fn send(

@@ -18,7 +18,7 @@ use super::frame::{SIM_TIME, crowd, events, stats};
 use super::options::RecordingOptions;
 use super::scene::bars;
 use super::text;
-use crate::analysis::round::brief;
+use analysis::round::brief;
 use views::{Property, View};
 
 /// Length of the loop that plays first, seconds.

@@ -11,11 +11,11 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::{AsComponents, EntityPath, Points2D};
 
 use super::Content;
-use crate::engine::scene::Region;
-use crate::output::colors::Rgb;
-use crate::output::recording::draw::color;
-use crate::output::recording::frame::crowd;
-use crate::output::recording::scene::obstacles;
+use crate::colors::Rgb;
+use crate::recording::draw::color;
+use crate::recording::frame::crowd;
+use crate::recording::scene::obstacles;
+use engine::scene::Region;
 
 /// Color of the crowd where it is only the background.
 const DIM: Rgb = [72, 77, 95];

@@ -2,13 +2,13 @@
 
 use rerun::{AsComponents, Image, LineStrips2D, RecordingStream, Transform3D};
 
-use crate::analysis::round;
-use crate::engine::math::Vector;
-use crate::engine::scene::Region;
-use crate::output::colors::{ColorMap, Rgb};
-use crate::output::recording::draw::{color, px, texts};
-use crate::output::recording::error::Cause;
-use crate::output::recording::frame::crowd::Maps;
+use crate::colors::{ColorMap, Rgb};
+use crate::recording::draw::{color, px, texts};
+use crate::recording::error::Cause;
+use crate::recording::frame::crowd::Maps;
+use analysis::round;
+use engine::math::Vector;
+use engine::scene::Region;
 
 /// The entities of the bars.
 pub const DENSITY: &str = "world/legend/density";

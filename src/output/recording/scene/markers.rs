@@ -3,14 +3,14 @@
 use rerun::RecordingStream;
 
 use super::names::Names;
-use crate::analysis::crossing::Line;
-use crate::engine::math::Vector;
-use crate::engine::scene::{Region, Scene};
-use crate::output::colors::Rgb;
-use crate::output::recording::draw::{Look, log_lines};
-use crate::output::recording::error::Cause;
-use crate::output::recording::options::RecordingOptions;
-use crate::output::scenery::{self, closed, named};
+use crate::colors::Rgb;
+use crate::recording::draw::{Look, log_lines};
+use crate::recording::error::Cause;
+use crate::recording::options::RecordingOptions;
+use crate::scenery::{self, closed, named};
+use analysis::crossing::Line;
+use engine::math::Vector;
+use engine::scene::{Region, Scene};
 
 const SOURCE: Look = ([0, 170, 200], 1.0, 3.0);
 const PUSH: Look = ([230, 110, 90], 1.0, 3.0);
@@ -38,7 +38,7 @@ pub struct Marked<'a> {
 
 impl Marked<'_> {
     /// Logs them, and adds their names.
-    pub(in crate::output::recording) fn log(
+    pub(in crate::recording) fn log(
         &self,
         stream: &RecordingStream,
         names: &mut Names,

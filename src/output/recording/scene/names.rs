@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 use rerun::{AsComponents, LineStrips2D, RecordingStream};
 
 use super::bars;
-use crate::engine::geometry::Walls;
-use crate::engine::math::Vector;
-use crate::engine::scene::{Region, Scene};
-use crate::output::colors::Rgb;
-use crate::output::labels::{self, Labels, Placed, Screen, Spot, along_lines, along_walls};
-use crate::output::recording::arrangement::Arrangement;
-use crate::output::recording::draw::{color, px, texts, xy};
-use crate::output::recording::error::Cause;
-use crate::scenario::floor_plan::Label;
+use crate::colors::Rgb;
+use crate::labels::{self, Labels, Placed, Screen, Spot, along_lines, along_walls};
+use crate::recording::arrangement::Arrangement;
+use crate::recording::draw::{color, px, texts, xy};
+use crate::recording::error::Cause;
+use engine::geometry::Walls;
+use engine::math::Vector;
+use engine::scene::{Region, Scene};
+use scenario::floor_plan::Label;
 
 /// The usual width of a letter, and what a label has beside its text, pixels.
 const LETTER: f64 = 6.0;

@@ -2,12 +2,12 @@
 
 use rerun::{RecordingStream, Rgba32};
 
-use crate::analysis::way_field::Grid;
-use crate::engine::geometry::Polygon;
-use crate::engine::math::{Vector, bounds};
-use crate::output::colors::Rgb;
-use crate::output::recording::draw::log_classes;
-use crate::output::recording::error::Cause;
+use crate::colors::Rgb;
+use crate::recording::draw::log_classes;
+use crate::recording::error::Cause;
+use analysis::way_field::Grid;
+use engine::geometry::Polygon;
+use engine::math::{Vector, bounds};
 
 /// The entity of the image.
 pub const ENTITY: &str = "world/geometry/obstacles";

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use rerun::{Points2D, Radius, RecordingStream};
 
 use super::names::Names;
-use crate::engine::journeys::Kind;
-use crate::engine::math::Vector;
-use crate::engine::scene::Scene;
-use crate::output::colors::Rgb;
-use crate::output::recording::draw::{color, log_lines, xy};
-use crate::output::recording::error::Cause;
-use crate::output::{labels, scenery};
+use crate::colors::Rgb;
+use crate::recording::draw::{color, log_lines, xy};
+use crate::recording::error::Cause;
+use crate::{labels, scenery};
+use engine::journeys::Kind;
+use engine::math::Vector;
+use engine::scene::Scene;
 
 /// The color of entrances.
 const ENTRANCE: Rgb = [0, 170, 200];

@@ -2,14 +2,14 @@
 
 use rerun::{EntityPath, RecordingStream, Rgba32, entity_path};
 
-use crate::analysis::round;
-use crate::analysis::way_field::{Grid, WayField};
-use crate::engine::math::bounds;
-use crate::engine::scene::Scene;
-use crate::engine::ways::Destination;
-use crate::output::colors::ColorMap;
-use crate::output::recording::draw::{Class, log_classes};
-use crate::output::recording::error::Cause;
+use crate::colors::ColorMap;
+use crate::recording::draw::{Class, log_classes};
+use crate::recording::error::Cause;
+use analysis::round;
+use analysis::way_field::{Grid, WayField};
+use engine::math::bounds;
+use engine::scene::Scene;
+use engine::ways::Destination;
 
 /// The longest side of an image, pixels, and the smallest pixel, meters.
 const SIDE: f64 = 480.0;

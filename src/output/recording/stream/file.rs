@@ -12,7 +12,7 @@ use rerun::external::re_log_encoding::rrd::{CrateVersion, EncodeError, Encoder, 
 use rerun::log::LogMsg;
 use rerun::sink::{LogSink, SinkFlushError};
 
-use crate::output::recording::error::GONE;
+use crate::recording::error::GONE;
 
 /// Maximum number of queued messages; senders wait when the queue is full.
 const QUEUE: usize = 1024;

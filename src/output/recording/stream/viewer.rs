@@ -15,7 +15,7 @@ use rerun::{DEFAULT_SERVER_PORT, SpawnError, SpawnOptions};
 
 use super::file::Failure;
 use super::relay::{GivenUp, Items, Relay};
-use crate::output::recording::error::RecordingError;
+use crate::recording::error::RecordingError;
 
 /// Timeout for connecting to a viewer.
 const CONNECTING: Duration = Duration::from_secs(3);

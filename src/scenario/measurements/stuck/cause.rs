@@ -1,15 +1,15 @@
 //! Why an agent makes no headway: a likely cause, from what lies between it and its goal.
 
 use super::{Aim, STUCK_AFTER, left};
-use crate::engine::agents::RADIUS_RANGE;
-use crate::engine::geometry::Walls;
-use crate::engine::journeys::{ChangeKind, Door, Kind};
-use crate::engine::math::{Vector, direction, perpendicular};
-use crate::engine::simulation::Simulation;
-use crate::engine::ways::side;
-use crate::scenario::error::numbers::tidy;
-use crate::scenario::error::quote::shown;
-use crate::scenario::measurements::passages::Openings;
+use crate::error::numbers::tidy;
+use crate::error::quote::shown;
+use crate::measurements::passages::Openings;
+use engine::agents::RADIUS_RANGE;
+use engine::geometry::Walls;
+use engine::journeys::{ChangeKind, Door, Kind};
+use engine::math::{Vector, direction, perpendicular};
+use engine::simulation::Simulation;
+use engine::ways::side;
 
 /// Agents whose centers are this far ahead touch, or almost, as a multiple of the sum of the radii.
 const TOUCHING: f64 = 1.25;

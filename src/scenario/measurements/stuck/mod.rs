@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use super::passages::Openings;
 use super::{Measure, Observed, is_due};
-use crate::engine::journeys::Status;
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::engine::ways::Destination;
+use engine::journeys::Status;
+use engine::math::Vector;
+use engine::simulation::Simulation;
+use engine::ways::Destination;
 
 /// An agent is stuck if it has made no headway in this time of walking, seconds.
 pub const STUCK_AFTER: f64 = 20.0;
@@ -153,7 +153,7 @@ pub(super) fn groups(seen: &[Option<Headway>], simulation: &Simulation) -> Vec<S
 fn watch(seen: &mut Vec<Option<Headway>>, simulation: &Simulation) {
     let agents = simulation.frame().agents;
     let groups = &simulation.scene().groups;
-    let can_be_stuck = |group: &crate::engine::scene::Group| {
+    let can_be_stuck = |group: &engine::scene::Group| {
         group.removal_radius.is_some() || group.journey.is_some() || group.direction.is_some()
     };
     if !groups.iter().any(can_be_stuck) {

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use super::room::{before_wall, nearest_wall};
 use super::{COUNT, Headings, STRAIGHT, Seen};
-use crate::engine::forces::walking::{FADE, Motions, ROUNDING, Walkers, headway};
-use crate::engine::frame::Frame;
-use crate::engine::math::{Vector, direction, perpendicular};
-use crate::engine::neighbors::Run;
-use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat};
+use crate::forces::walking::{FADE, Motions, ROUNDING, Walkers, headway};
+use crate::frame::Frame;
+use crate::math::{Vector, direction, perpendicular};
+use crate::neighbors::Run;
+use crate::pairs::prelude::*;
+use crate::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat};
 
 /// The headings between which an agent chooses.
 #[derive(Debug, Clone, PartialEq)]
@@ -139,7 +139,7 @@ impl Headings {
 
     /// S_k, m/s, before agents, for eight agents i. `runs` contain all agents in view, and some out of view.
     #[inline(always)]
-    pub(in crate::engine::forces::walking) fn rooms<R: Real, S: Simd, const MEETS: bool>(
+    pub(in crate::forces::walking) fn rooms<R: Real, S: Simd, const MEETS: bool>(
         &self,
         simd: S,
         bodies: &Bodies<R>,

@@ -29,10 +29,10 @@ use std::f64::consts::TAU;
 use schemars::JsonSchema;
 
 use super::{FADE, Headway, View};
-use crate::engine::clock::Clock;
-use crate::engine::forces::rates::Rates;
-use crate::engine::frame::Frame;
-use crate::engine::math::{Vector, unit_vector};
+use crate::clock::Clock;
+use crate::forces::rates::Rates;
+use crate::frame::Frame;
+use crate::math::{Vector, unit_vector};
 
 /// The number of headings.
 pub const COUNT: usize = 7;

@@ -1,8 +1,8 @@
 //! The room before walls.
 
-use crate::engine::frame::Frame;
-use crate::engine::geometry::Wall;
-use crate::engine::math::Vector;
+use crate::frame::Frame;
+use crate::geometry::Wall;
+use crate::math::Vector;
 
 /// How far a disc of this radius at `p` can move in the direction `heading` (of length 1) before it touches the wall,
 /// meters: zero if it touches it already and moves closer, infinite if it never does.

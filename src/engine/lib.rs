@@ -1,0 +1,56 @@
+//! The engine: geometry, kernels, the state of the crowd, forces, and the loop of §4.1. It does not depend on files,
+//! scenario names or output. A [`Simulation`](simulation::Simulation) is built from a [`Scene`](scene::Scene) and
+//! advances it frame by frame; all results of a frame can be read from its [`Frame`](frame::Frame). [`breakdown`] lists
+//! everything that acts on one agent, term by term.
+
+#![warn(missing_docs, clippy::unwrap_used)]
+
+pub mod math;
+
+pub mod period;
+
+pub mod random;
+
+pub mod distribution;
+
+pub mod geometry;
+
+pub mod ways;
+
+pub mod journeys;
+
+pub mod kernel;
+
+pub mod clock;
+
+pub mod agents;
+
+pub mod traits;
+
+pub mod neighbors;
+
+pub mod pairs;
+
+pub mod boundary;
+
+pub mod frame;
+
+pub mod density;
+
+pub mod forces;
+
+pub mod profile;
+
+pub mod placement;
+
+pub mod packing;
+
+pub mod entrance;
+
+pub mod scene;
+
+pub mod stability;
+
+pub mod simulation;
+
+pub mod breakdown;

@@ -1,0 +1,180 @@
+//! Floors behind the lines of exits and entrances on the edge of the walkable area.
+
+use engine::geometry::Area;
+use engine::math::{Vector, direction, perpendicular};
+use engine::simulation::{BEFORE_WALLS, WALKS_ON};
+
+/// People need this much room behind the line of an exit to cross it, meters.
+const ROOM_BEHIND: f64 = 0.5;
+/// The line of an exit or entrance, and the length of the floor behind it, meters.
+pub type Door = ([Vector; 2], f64);
+
+/// The floor behind the line of an exit on the edge of the walkable area is this long, meters: the bodies of those who
+/// have left walk on there. The floor behind an entrance ends at [`WIDE_AT`].
+pub const BEHIND: f64 = WALKS_ON + BEFORE_WALLS;
+/// Another room that is this near behind a line, meters, is next door: the line lies in a door between both. Walls of
+/// buildings are not thicker.
+const NEXT_DOOR: f64 = 0.6;
+/// Where another room lies farther behind, the floor ends this far before it, meters: no way leads through the wall
+/// between.
+const BEFORE_ROOMS: f64 = 0.5;
+/// The same before rooms nearer than [`WIDE_AT`].
+const BEFORE_NEAR_ROOMS: f64 = 0.1;
+/// Rooms nearer than [`WIDE_AT`] are looked for at these parts of the line, and not at its ends, beside which the floor
+/// of its own room may go on.
+const PARTS: [f64; 3] = [0.1, 0.5, 0.9];
+/// That floor begins this far before the line, meters, so that rounding leaves no gap between.
+pub const OVERLAP: f64 = 0.01;
+
+/// That floor widens by this on both sides, meters, or less where something else is near: RVO stops in front of a dead
+/// end as wide as a door.
+const WIDENS: [f64; 4] = [3.0, 2.0, 1.0, 0.0];
+/// It has widened this far behind the line, meters.
+pub const WIDE_AT: f64 = 3.0;
+
+/// The floor behind the line of an exit or entrance on the edge of the walkable area.
+pub struct Opening {
+    /// The ends of the line, meters.
+    ends: [Vector; 2],
+    /// The direction from the first end to the second, and out of the area.
+    directions: [Vector; 2],
+    /// The room that the line has before the edge of the area, meters.
+    before: f64,
+    /// Meters.
+    depth: f64,
+    /// It is wider by this on both sides from [`WIDE_AT`] on, meters.
+    widens: f64,
+}
+
+/// The floors behind the lines of exits and entrances that lie on the edge of the walkable area. They end before other
+/// rooms, unless these are next door; the floors of two lines do not touch unless their lines are that near.
+pub fn openings(walkable: &[Area], doors: &[Door]) -> Vec<Opening> {
+    let is_floor = |p: Vector| walkable.iter().any(|area| area.contains(p));
+    let openings = doors
+        .iter()
+        .filter_map(|&door| Opening::of(&is_floor, door));
+    let openings: Vec<Opening> = openings.collect();
+    let widest = |opening: &Opening| {
+        let is_taken = |p: Vector, widens: f64| {
+            let mut others = openings.iter().filter(|other| !other.is_at(opening.ends));
+            is_floor(p) || others.any(|other| other.widened(widens).contains(p))
+        };
+        let wide = WIDENS.into_iter().map(|widens| opening.widened(widens));
+        let mut free = wide.filter(|wide| !wide.places().any(|p| is_taken(p, wide.widens)));
+        free.next().unwrap_or_else(|| opening.widened(0.0))
+    };
+    openings.iter().map(widest).collect()
+}
+
+impl Opening {
+    /// `None` if there is room to cross the line, or none on both sides.
+    fn of(is_floor: &impl Fn(Vector) -> bool, ([a, b], reach): Door) -> Option<Self> {
+        const STEPS: u32 = 300;
+        let room_at = |part: f64, way: Vector, length: f64| {
+            let start = a + (b - a) * part;
+            let steps = (1..=STEPS).map(|k| length * f64::from(k) / f64::from(STEPS));
+            let mut places = steps.map(|step| (step, is_floor(start + way * step)));
+            places.find(|(_, is_floor)| !is_floor).map(|(step, _)| step)
+        };
+        let room = |way: Vector, length: f64| room_at(0.5, way, length);
+        let along = direction(b - a);
+        let normal = perpendicular(along);
+        let out = [normal, -normal]
+            .into_iter()
+            .find(|way| room(*way, ROOM_BEHIND).is_some())?;
+        if room(-out, ROOM_BEHIND).is_some() {
+            return None; // walls on both sides: the line is not at a floor, which is refused later
+        }
+        let wall = room(out, ROOM_BEHIND)?;
+        let steps = (1..=STEPS).map(|k| wall + (reach - wall) * f64::from(k) / f64::from(STEPS));
+        let is_room = |step: &f64| {
+            let ends = [0.0, 1.0].into_iter().filter(|_| *step > WIDE_AT);
+            let mut parts = ends.chain(PARTS);
+            parts.any(|part| is_floor(a + (b - a) * part + out * *step))
+        };
+        let room = steps.into_iter().find(is_room);
+        let depth = room.map_or(reach, |step| match step {
+            _ if step <= NEXT_DOOR => step,
+            _ if step <= WIDE_AT => step - BEFORE_NEAR_ROOMS,
+            _ => step - BEFORE_ROOMS,
+        });
+        let before = PARTS.map(|part| room_at(part, out, wall).unwrap_or(wall));
+        let before = before.into_iter().fold(wall, f64::min) - ROOM_BEHIND / f64::from(STEPS);
+        Some(Self {
+            ends: [a, b],
+            directions: [along, out],
+            before: before.max(0.0),
+            depth,
+            widens: 0.0,
+        })
+    }
+
+    fn widened(&self, widens: f64) -> Self {
+        Self { widens, ..*self }
+    }
+
+    /// Whether it is behind this line.
+    fn is_at(&self, [a, b]: [Vector; 2]) -> bool {
+        self.ends == [a, b] || self.ends == [b, a]
+    }
+
+    /// How much wider it is on each side `step` meters behind the line, meters.
+    fn aside(&self, step: f64) -> f64 {
+        self.widens * (step / WIDE_AT).clamp(0.0, 1.0)
+    }
+
+    /// The place `step` meters behind the line; `across` is 0 on one side and 1 on the other.
+    fn place(&self, step: f64, across: f64) -> Vector {
+        let ([a, b], [along, out]) = (self.ends, self.directions);
+        let aside = along * self.aside(step);
+        let (a, b) = (a - aside, b + aside);
+        a + (b - a) * across + out * step
+    }
+
+    /// Places all over the widened part, some decimeters apart.
+    fn places(&self) -> impl Iterator<Item = Vector> {
+        const STEPS: u32 = 24;
+        let part = |k: u32| f64::from(k) / f64::from(STEPS);
+        let steps = if self.widens > 0.0 { 1..STEPS } else { 0..0 };
+        steps.flat_map(move |k| {
+            let step = self.depth * part(k);
+            (0..=STEPS).map(move |l| self.place(step, part(l)))
+        })
+    }
+
+    fn contains(&self, p: Vector) -> bool {
+        let (way, [along, out]) = (p - self.ends[0], self.directions);
+        let (step, across) = (way.dot(&out), way.dot(&along));
+        let aside = self.aside(step);
+        let width = (self.ends[1] - self.ends[0]).norm();
+        (0.0..=self.depth).contains(&step) && (-aside..=width + aside).contains(&across)
+    }
+
+    /// The floor behind the edge of the area, counterclockwise.
+    pub fn outline(&self) -> Vec<Vector> {
+        let ring = self.ring(self.before);
+        let mut outline: Vec<Vector> = ring.into_iter().map(Vector::from).collect();
+        let [along, out] = self.directions;
+        // The floor begins to widen where it begins, before the edge.
+        let end = self.depth.min(WIDE_AT);
+        let part = (self.before + OVERLAP) / (end + OVERLAP);
+        let aside = self.aside(end) * part - self.aside(self.before);
+        if let [first, .., last] = &mut outline[..] {
+            (*first, *last) = (*first + along * aside, *last - along * aside);
+        }
+        if along.perp(&out) < 0.0 {
+            outline.reverse();
+        }
+        outline
+    }
+
+    /// The corners, from `first` meters behind the line.
+    pub fn ring(&self, first: f64) -> Vec<[f64; 2]> {
+        let is_long = self.depth > WIDE_AT;
+        let steps = [Some(first), is_long.then_some(WIDE_AT), Some(self.depth)];
+        let steps = steps.into_iter().flatten();
+        let there = steps.clone().map(|step| self.place(step, 1.0));
+        let back = steps.rev().map(|step| self.place(step, 0.0));
+        there.chain(back).map(Into::into).collect()
+    }
+}

@@ -1,0 +1,166 @@
+//! Walkable areas and obstacles, given in a scenario or in files that it names.
+
+use crate::error::{Problem, Under};
+use crate::file::File;
+use crate::floor_plan::{FloorPlan, FloorPlanError};
+use crate::keys::shapes::{Outline, Point, Ring as GivenRing};
+use crate::scene::openings::{BEHIND, Door, OVERLAP, Opening, WIDE_AT, openings};
+use crate::scene::periodic;
+use engine::geometry::{Area, Polygon};
+use engine::math::Vector;
+use engine::period::Period;
+
+pub const WALKABLE_AREA: &str = "walkable_area";
+pub const OBSTACLES: &str = "obstacles";
+
+/// Most corners of one ring: the search for crossing edges compares all nearby pairs.
+const MOST_CORNERS: usize = 20_000;
+/// Most walls of a scenario.
+const MOST_WALLS: u64 = 1_000_000;
+
+/// The number of walls of a scene: one per corner, in a periodic scene of three periods.
+pub fn walls(file: &File) -> u64 {
+    let rings = file.obstacles.iter().flat_map(Outline::rings);
+    let rings = rings.chain(file.walkable_area.iter().flatten().flatten());
+    let corners: u64 = rings.map(|ring| ring.0.len() as u64).sum();
+    corners * if file.periodic.is_some() { 3 } else { 1 }
+}
+
+/// Notes on obstacles off the floor, and on floors inside other floors. None in a periodic scene, where a polygon
+/// counts with all its copies.
+pub fn without_effect(file: &File) -> Result<Vec<String>, Problem> {
+    if file.periodic.is_some() {
+        return Ok(Vec::new());
+    }
+    let floors = file.walkable_area.iter().flatten().enumerate();
+    let floors = floors.map(|(k, rings)| (WALKABLE_AREA, k, rings.as_slice()));
+    let bodies = file.obstacles.iter().enumerate();
+    let bodies = bodies.map(|(k, body)| (OBSTACLES, k, body.rings()));
+    let polygon = |(list, k, given)| Ok((format!("{list}[{k}]"), rings(given)?, list == OBSTACLES));
+    let polygons: Vec<_> = floors
+        .chain(bodies)
+        .map(polygon)
+        .collect::<Result<_, Problem>>()?;
+    FloorPlan::without_effect(polygons.into_iter()).map_err(problem)
+}
+
+/// What surrounds people.
+pub struct Surroundings {
+    /// The obstacles in order, then the solid around the walkable area.
+    pub solids: Vec<Polygon>,
+    /// The outlines of the floors behind exits and entrances, counterclockwise.
+    pub behind: Vec<Vec<Vector>>,
+}
+
+/// The obstacles and the walkable area of a file.
+pub fn surroundings(file: &File) -> Result<Surroundings, Problem> {
+    let walls = walls(file);
+    if walls > MOST_WALLS {
+        let reason = format!(
+            "{walls} corners in total; at most {MOST_WALLS} are allowed: leave out unimportant corners"
+        );
+        return Err(Problem::new(OBSTACLES, reason));
+    }
+    let period = file.periodic.map(Period::from);
+    let mut behind = Vec::new();
+    let mut solids = Vec::with_capacity(file.obstacles.len() + 1);
+    let mut copies = Vec::new();
+    for (k, given) in file.obstacles.iter().enumerate() {
+        let bodies = obstacle(given, period.as_ref()).under(&format!("{OBSTACLES}[{k}]"))?;
+        let mut bodies = bodies.into_iter();
+        solids.extend(bodies.next());
+        copies.extend(bodies);
+    }
+    solids.extend(copies);
+    if let Some(polygons) = &file.walkable_area {
+        let exits = file.exits.iter().map(|exit| (exit.line, BEHIND));
+        let entrances = file.entrances.iter();
+        let entrances = entrances.map(|entrance| (entrance.line.0, WIDE_AT));
+        let doors = exits.chain(entrances);
+        let doors: Vec<Door> = doors
+            .map(|(line, reach)| (line.map(Vector::from), reach))
+            .collect();
+        let around = walls_round(polygons, &doors, period.as_ref()).under(WALKABLE_AREA)?;
+        if let Some(period) = &period {
+            periodic::check_ends(&around.solids, period).under(WALKABLE_AREA)?;
+        }
+        solids.extend(around.solids);
+        behind = around.behind;
+    }
+    Ok(Surroundings { solids, behind })
+}
+
+/// The solid around `polygons` and their copies, open behind the lines of exits and entrances.
+fn walls_round(
+    polygons: &[Vec<GivenRing>],
+    doors: &[Door],
+    period: Option<&Period>,
+) -> Result<Surroundings, Problem> {
+    let mut given = Vec::with_capacity(polygons.len());
+    for (k, polygon) in polygons.iter().enumerate() {
+        let copies = rings(polygon).and_then(|rings| periodic::copies(&rings, period));
+        given.extend(copies.under(&format!("[{k}]"))?);
+    }
+    let mut plan = FloorPlan::walkable(&given).map_err(problem)?;
+    let openings = openings(&plan.walkable, doors);
+    if !openings.is_empty() {
+        given.extend(openings.iter().map(|opening| vec![opening.ring(-OVERLAP)]));
+        plan = FloorPlan::walkable(&given).map_err(problem)?;
+    }
+    Ok(Surroundings {
+        solids: plan
+            .solids()
+            .map_err(|error| Problem::new("", error.to_string()))?,
+        behind: openings.iter().map(Opening::outline).collect(),
+    })
+}
+
+/// An area from its outline and holes.
+pub fn area(given: &[GivenRing]) -> Result<Area, Problem> {
+    let area = FloorPlan::obstacle(&rings(given)?).map_err(problem)?;
+    match Polygon::filling(area.clone()) {
+        Ok(_) => Ok(area),
+        Err(error) => Err(Problem::new("", error.to_string())),
+    }
+}
+
+/// A body, with its copies in a periodic scene.
+fn obstacle(given: &Outline, period: Option<&Period>) -> Result<Vec<Polygon>, Problem> {
+    if let Some(period) = period {
+        return periodic::bodies(&rings(given.rings())?, period);
+    }
+    let polygon = match given {
+        Outline::Ring(ring) => Polygon::new(points(ring)?.into_iter().map(Into::into).collect()),
+        Outline::Rings(given) => {
+            let area = FloorPlan::obstacle(&rings(given)?).map_err(problem)?;
+            Polygon::filling(area)
+        }
+    };
+    let polygon = polygon.map_err(|error| Problem::new("", error.to_string()))?;
+    Ok(vec![polygon])
+}
+
+fn rings(given: &[GivenRing]) -> Result<Vec<Vec<[f64; 2]>>, Problem> {
+    let ring = |(r, ring)| points(ring).under(&format!("[{r}]"));
+    given.iter().enumerate().map(ring).collect()
+}
+
+/// The corners of a ring, if there are not too many.
+fn points(GivenRing(ring): &GivenRing) -> Result<Vec<[f64; 2]>, Problem> {
+    let count = ring.len();
+    if count > MOST_CORNERS {
+        let reason =
+            format!("{count} corners; at most {MOST_CORNERS} are allowed: split it into several");
+        return Err(Problem::new("", reason));
+    }
+    Ok(ring.iter().map(|&Point(point)| point).collect())
+}
+
+/// Converts an error; its place becomes the path if it is an index.
+pub fn problem(error: FloorPlanError) -> Problem {
+    match error {
+        FloorPlanError::Geometry { place, reason } => Problem::new(place, reason),
+        FloorPlanError::EmptyGeometry(place) => Problem::new(place, "has no rings"),
+        other => Problem::new("", other.to_string()),
+    }
+}
