@@ -65,12 +65,13 @@ pub fn column(rows: &[Vec<(String, String)>], name: &str) -> Vec<String> {
     rows.iter().map(value).collect()
 }
 
-/// The files in `cases/` with this extension.
+/// The files in `cases/` with this extension, without those that are being written.
 pub fn cases(out: &Path, extension: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(out.join("cases")).unwrap();
     let paths = entries.map(|entry| entry.unwrap().path());
     paths
         .filter(|path| path.to_str().unwrap().ends_with(extension))
+        .filter(|path| !path.file_name().unwrap().to_str().unwrap().starts_with('.'))
         .collect()
 }
 
