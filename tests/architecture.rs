@@ -1,6 +1,7 @@
 //! The architecture: crates and modules use only those declared above them, each foreign crate is used in one place,
 //! no module has its source elsewhere, there is no `unwrap` outside of tests, no file has more than 400 lines, and no
-//! line more than 120 characters. The checks of lengths hold for all Rust files, that of `unwrap` for `experiments`, too.
+//! line more than 120 characters. The checks of lengths hold for all Rust files, that of `unwrap` for `experiments`,
+//! too.
 
 use std::fs;
 use std::path::{Path, PathBuf};
