@@ -21,8 +21,6 @@ fn main() -> io::Result<()> {
         collect(Path::new(krate), &mut files)?;
     }
     println!("cargo::rerun-if-changed=../../{LOCK}");
-    // The files that are built into the program: a new one must be found.
-    println!("cargo::rerun-if-changed=../../scenarios");
     files.sort();
     let mut hasher = Sha256::new();
     for file in &files {
