@@ -10,6 +10,10 @@ use serde_json::{Value, json};
 
 use crate::common::program::{refused, run, run_json};
 
+fn told(differences: &Differences) -> String {
+    differences.findings().unwrap().document.text()
+}
+
 fn shipped(settings: &[&str]) -> Scenario {
     let settings: Vec<Setting> = settings.iter().map(|text| text.parse().unwrap()).collect();
     Scenario::shipped("evacuation", &settings).unwrap()
@@ -195,12 +199,8 @@ fn rows_of_people_that_only_one_file_has_are_counted_and_the_text_says_what_is_n
         .find(|one| one.name.starts_with("rows with an id"));
     let rows = rows.unwrap_or_else(|| panic!("{found:?}"));
     assert_eq!([&rows.a, &rows.b], [&json!(1), &json!(1)]);
-    assert!(
-        found
-            .text()
-            .contains("Other columns, such as densities and speeds, are not.")
-    );
-    let same = of_tracks(&a, &a).text();
+    assert!(told(&found).contains("Other columns, such as densities and speeds, are not."));
+    let same = told(&of_tracks(&a, &a));
     assert!(same.starts_with("0 result(s) differ, "), "{same}");
     assert!(same.contains("Compared: who is where and when"), "{same}");
 }

@@ -39,7 +39,10 @@ fn rows_stand_beside_the_values_of_the_paper_that_they_belong_to() {
     let questions = Questions::new(&study, &request(&["flow_per_s=10%", "time_secs=10%"])).unwrap();
     let answers = questions.answer(&store, &()).unwrap();
     assert!(answers.missed().is_empty());
-    let text = estimated(&answers).unwrap();
+    let findings = estimated(&answers).unwrap();
+    let parts = findings.document.parts("");
+    let (name, text) = &parts[0];
+    assert_eq!(name, "table1-estimate");
     let lines: Vec<&str> = text.lines().collect();
     let paper = published().table1.rows;
     for (line, (profile, setting)) in lines[2..]
@@ -69,8 +72,9 @@ fn rows_stand_beside_the_values_of_the_paper_that_they_belong_to() {
         text.contains("of 2 values are inside their bands"),
         "{text}"
     );
-    let table = answers.write(&store).unwrap();
-    assert!(table.ends_with("table1-estimate.csv"));
+    let written = findings.write(folder.path()).unwrap();
+    let table = folder.path().join("table1-estimate.csv");
+    assert!(written.contains(&table), "{written:?}");
     let texts = pictures::texts_of(&folder.path().join("table1-estimate"));
     assert!(texts.iter().any(|text| text.contains("sph")), "{texts:?}");
 }

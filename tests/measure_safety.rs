@@ -69,9 +69,10 @@ fn the_report_names_the_thresholds_as_what_they_are() {
         options: &options,
         measured: &measured(&tracks, 1.0),
     };
-    let text = report.text();
+    let findings = report.findings(&Site::new(Vec::new())).unwrap();
+    let text = findings.document.text();
     assert!(text.matches("not safety limits").count() >= 2, "{text}");
-    let json = report.json();
+    let json = &findings.data;
     assert_eq!(json["safety"]["dense"][0]["exposed"]["longest_secs"], 2.0);
     assert_eq!(json["safety"]["dense"].as_array().unwrap().len(), 3);
     assert_eq!(json["safety"]["departures"]["left"], 0);
@@ -90,11 +91,11 @@ fn the_threshold_of_mina_is_named_in_packed_crowds_only() {
             options: &options,
             measured: &measured,
         };
-        let text = report.text();
+        let site = Site::new(Vec::new());
+        let text = report.findings(&site).unwrap().document.text();
         assert_eq!(text.contains("Mina"), is_packed, "{text}");
         let says = "nobody was above 6 P/m²: thresholds of the literature are for packed crowds";
         assert_eq!(text.contains(says), !is_packed, "{text}");
-        let site = Site::new(Vec::new());
         let sheets: Vec<_> = pictures::sheets(&measured, &site).collect();
         let labels = sheets.iter().flat_map(|(_, sheet)| &sheet.panels);
         let labels = labels.flat_map(|panel| format!("{:?}", panel.marks).into_bytes());

@@ -66,7 +66,8 @@ fn run_in(study: &Study, out: &Path, shard: Shard) -> (Tally, Log) {
 
 fn write(study: &Study, out: &Path) {
     let store = Store::at(out);
-    Gathered::of(study, &store).write(&store, None).unwrap();
+    let findings = Gathered::of(study, &store).findings(None).unwrap();
+    findings.write(out).unwrap();
 }
 
 #[test]
@@ -352,7 +353,7 @@ fn labels_name_cells_and_measurements_are_added_to_the_scenarios_own() {
     }
     assert!(gathered.labeled("softer").is_err());
     // A terminal shows the labels, not the settings behind them.
-    let text = gathered.text();
+    let text = gathered.findings(None).unwrap().document.text();
     assert!(
         text.contains("stiff") && !text.contains("gas_constant"),
         "{text}"

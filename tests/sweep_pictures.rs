@@ -206,8 +206,15 @@ fn pictures_are_written_beside_the_tables_and_without_numbers_the_axis_has_names
         .map(|(_, name)| name.as_str())
         .collect();
     assert_eq!(names, ["sph", "sf->sph"]);
-    let written = gathered.write(&store, Some(&sheet)).unwrap();
-    assert_eq!(written.len(), study.files().len());
+    let findings = gathered.findings(Some(sheet.clone())).unwrap();
+    let written = findings.write(store.folder()).unwrap();
+    let known = study.names().in_folder();
+    let names = written.iter().map(|path| path.file_name().unwrap());
+    assert!(
+        names
+            .clone()
+            .all(|name| known.contains(&name.to_str().unwrap().to_owned()))
+    );
     // Every result is in the files.
     let read = |ending: &str| {
         let path = written

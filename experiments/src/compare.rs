@@ -9,7 +9,7 @@ mod setting;
 
 use std::path::Path;
 
-use sandbox::lab::bench::{Crowd, Findings, Plan, Report};
+use sandbox::lab::bench::{Crowd, Plan, Report, Timings};
 use sandbox::lab::error::LabError;
 use sandbox::lab::machine::Machine;
 use sandbox::output::table::Table;
@@ -51,7 +51,7 @@ pub fn measure(plan: &Plan, python: &Path, say: &dyn Fn(&str)) -> Result<Report,
     Ok(Report::of(NAME, ABOUT, plan, findings))
 }
 
-fn run(plan: &Plan, python: &Path, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
+fn run(plan: &Plan, python: &Path, say: &dyn Fn(&str)) -> Result<Timings, LabError> {
     let sizes = plan.choose(&SIZES[..], &[100, 400]).iter().copied();
     let sizes: Vec<u32> = sizes.filter(|&agents| agents <= plan.largest).collect();
     let main = sizes.iter().copied().filter(|&agents| agents <= MAIN).max();
@@ -89,7 +89,7 @@ fn run(plan: &Plan, python: &Path, say: &dyn Fn(&str)) -> Result<Findings, LabEr
         rows.append(&mut race(&mut taking_part, own_here, &crowd, repeats)?);
     }
     rows.sort_by_key(|row| Some(row.agents) != main);
-    Ok(Findings {
+    Ok(Timings {
         table: table(&rows),
         sheet: picture::picture(&rows),
         rows: json!(rows),

@@ -17,7 +17,7 @@ use sandbox::engine::math::Vector;
 use sandbox::engine::neighbors::SKIN;
 use sandbox::engine::simulation::{Simulation, Stage};
 use sandbox::lab::bench::timing::{ms_of, ms_per_frame, pool};
-use sandbox::lab::bench::{Benchmark, Findings, Plan};
+use sandbox::lab::bench::{Benchmark, Plan, Timings};
 use sandbox::lab::error::LabError;
 use sandbox::output::table::Table;
 use serde::Serialize;
@@ -78,12 +78,12 @@ struct Row {
     model: Vec<Modeled>,
 }
 
-fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
+fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Timings, LabError> {
     let mut rows = Vec::new();
     for kind in Kind::all(plan) {
         rows.append(&mut measure(&kind, plan, say)?);
     }
-    Ok(Findings {
+    Ok(Timings {
         table: table(&rows),
         sheet: picture::sheet(&rows),
         rows: json!(rows),

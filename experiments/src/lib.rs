@@ -5,6 +5,8 @@
 //! |---|---|---|
 //! | [`domains`] | how would crowds divide among processes? | docs/scaling.md |
 //! | [`compare`] | how fast are other engines on the same crowds? | docs/performance.md |
+//! | [`intervals`] | how often do the intervals of estimates hold the value? | docs/accuracy.md |
+//! | [`physics`] | do crowds of the model do what crowds did in known experiments? | docs/questions.md |
 //! | [`symmetric`] | would sums that visit each pair once pay? | docs/performance.md |
 //! | [`walls`] | how accurate are the integrals over walls by this and other methods? | docs/accuracy.md |
 
@@ -12,5 +14,7 @@
 
 pub mod compare;
 pub mod domains;
+pub mod intervals;
+pub mod physics;
 pub mod symmetric;
 pub mod walls;

@@ -5,9 +5,15 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, Parser, Subcommand};
-use experiments::{compare, domains, symmetric, walls};
-use sandbox::cli::{Failure, PrintOptions, ResultOptions, TimingOptions, UpdateOptions, main_of};
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand, value_parser};
+use experiments::intervals::{COVERAGE, KNOWLEDGE, Pool, coverage, knowledge};
+use experiments::{compare, domains, physics, symmetric, walls};
+use sandbox::cli::{
+    CaseOptions, Failure, PrintOptions, ResultOptions, TimingOptions, UpdateOptions, Watch, main_of,
+};
+use sandbox::lab::reproduce::reproduce;
+use sandbox::output::document::Names;
 
 /// Repeat finished experiments
 #[derive(Parser)]
@@ -37,6 +43,39 @@ enum Command {
         mut_arg("out", |out| out.help("Write the results to this folder as Markdown, CSV, JSON, SVG and PNG"))
     )]
     Walls(WallOptions),
+    /// How often do the intervals of `sandbox estimate` hold the value? (some hours)
+    #[command(
+        after_help = "Example: cargo run --release -p experiments -- coverage --seeds 60 --update docs/tables/accuracy.md --out DIR"
+    )]
+    Coverage(CoverageOptions),
+    /// Open questions of crowd physics: crowds of the model in situations with known experiments (hours)
+    #[command(
+        after_help = "Example: cargo run --release -p experiments -- physics start-waves --out DIR"
+    )]
+    Physics(PhysicsOptions),
+    /// What does `sandbox estimate` know before the first run? Its JSON ships with the program (an hour)
+    Knowledge(CaseOptions),
+}
+
+#[derive(Args)]
+struct PhysicsOptions {
+    /// The question
+    #[arg(value_parser = PossibleValuesParser::new(physics::PRODUCTS.map(|product| product.name)))]
+    question: String,
+    #[command(flatten)]
+    cases: CaseOptions,
+}
+
+#[derive(Args)]
+struct CoverageOptions {
+    /// Few runs and estimates; a check that everything works
+    #[arg(long)]
+    quick: bool,
+    /// Number of runs at each step in the pools [default: 300]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(2..=1000))]
+    seeds: Option<u32>,
+    #[command(flatten)]
+    cases: CaseOptions,
 }
 
 #[derive(Args)]
@@ -82,7 +121,36 @@ fn run(command: &Command) -> Result<(), Failure> {
                 compare::measure(plan, python, say)
             }),
         Command::Walls(options) => measure_walls(options),
+        Command::Coverage(options) => count_intervals(options),
+        Command::Physics(options) => {
+            let PhysicsOptions { question, cases } = options;
+            let product = physics::PRODUCTS
+                .into_iter()
+                .find(|product| product.name == question);
+            let product = product.ok_or_else(|| Failure::Input(format!("{question}: unknown")))?;
+            let store = cases.store(&[product.name], &product.names())?;
+            let found = reproduce(&[product], 1, &store, &Watch::new())?;
+            found.iter().try_for_each(|one| cases.give(one))
+        }
+        Command::Knowledge(cases) => {
+            let store = cases.store(&[KNOWLEDGE], &Names::new(KNOWLEDGE, &[KNOWLEDGE], &[]))?;
+            cases.give(&knowledge(&store, &Watch::new())?.findings()?)
+        }
     }
+}
+
+fn count_intervals(options: &CoverageOptions) -> Result<(), Failure> {
+    let usual = match options.quick {
+        true => Pool::QUICK,
+        false => Pool::WHOLE,
+    };
+    let pool = Pool {
+        seeds: options.seeds.map_or(usual.seeds, |seeds| seeds as usize),
+        ..usual
+    };
+    let cases = &options.cases;
+    let store = cases.store(&[COVERAGE], &Names::new(COVERAGE, &[COVERAGE], &[]))?;
+    cases.give(&coverage(pool, &store, &Watch::new())?.findings()?)
 }
 
 fn measure_walls(options: &WallOptions) -> Result<(), Failure> {
@@ -92,11 +160,10 @@ fn measure_walls(options: &WallOptions) -> Result<(), Failure> {
         print,
         document,
     } = options;
-    results.check(walls::files)?;
+    results.check(&Names::new(walls::NAME, &[walls::NAME], &[walls::NAME]))?;
     document.check(results.out.as_deref(), &[walls::TABLES])?;
     print.apply();
-    let report = walls::measure(*quick);
-    let (json, text) = (|| report.json(), || report.markdown());
-    results.give(json, text, |folder| report.save(folder))?;
-    document.put([(walls::TABLES, report.markdown())])
+    let findings = walls::measure(*quick).findings()?;
+    results.give(&findings)?;
+    document.put(findings.document.parts(walls::TABLES))
 }

@@ -16,7 +16,7 @@ use sandbox::engine::pairs::prelude::*;
 use sandbox::engine::pairs::{
     Bodies, Lanes, Level, Packed, PairSum, Simd, add_pairs, dispatch, load, splat, spread, store,
 };
-use sandbox::lab::bench::{Benchmark, Crowd, Findings, Plan};
+use sandbox::lab::bench::{Benchmark, Crowd, Plan, Timings};
 use sandbox::lab::error::LabError;
 use sandbox::lab::gallery::{color, medians, single};
 use sandbox::output::plot::{Axis, Sheet};
@@ -46,7 +46,7 @@ struct Row {
     ratio: f64,
 }
 
-fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
+fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Timings, LabError> {
     say("densities of 10,000 agents");
     let mut simulation = Crowd::concert(AGENTS).settled(plan.choose(FRAMES, 2))?;
     simulation
@@ -95,7 +95,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         row(0, "each pair from both sides", all),
         row(1, "each pair once", half),
     ];
-    Ok(Findings {
+    Ok(Timings {
         table: Table::of(&rows)
             .column("sums", |row| row.sums)
             .fixed("visited/agent", 2, |row| row.visited)

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::builder::PossibleValuesParser;
 use clap::{ArgGroup, Args};
 
+use super::documents::DocumentOptions;
 use super::failure::Failure;
 use super::values::{
     self, dpi, every_frames, frame_rate, millimeters, positive_seconds, recording, seconds, seed,
@@ -123,6 +124,8 @@ pub struct OutputOptions {
     /// Also print the computing time of each stage of a frame
     #[arg(long, short)]
     pub verbose: bool,
+    #[command(flatten)]
+    pub files: DocumentOptions,
     #[command(flatten)]
     pub record: RecordOptions,
     #[command(flatten)]

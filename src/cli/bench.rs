@@ -1,17 +1,18 @@
 //! `sandbox bench`: performance on this machine.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use serde_json::Value;
 
 use super::arguments::{PrintOptions, use_threads};
+use super::documents::{DocumentOptions, add_folder};
 use super::failure::Failure;
-use super::terminal::{talk, tell};
+use super::terminal::talk;
 use super::values::{repeats, threads};
-use lab::bench::{BENCHMARKS, Plan, Report, files};
+use lab::bench::{BENCHMARKS, Plan, Report};
 use lab::error::LabError;
+use output::document::{Findings, Names};
 use runs::outputs::{Manner, Outputs};
 
 /// Examples of commands.
@@ -34,9 +35,11 @@ pub struct BenchOptions {
 /// Where the results of a measurement go.
 #[derive(Args)]
 pub struct ResultOptions {
-    /// Write the results to this folder as JSON, SVG and PNG
+    /// Write the results to this folder as Markdown, JSON, CSV and pictures
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub files: DocumentOptions,
     /// Replace existing results
     #[arg(long)]
     pub force: bool,
@@ -46,40 +49,26 @@ pub struct ResultOptions {
 }
 
 impl ResultOptions {
-    /// Checks that the files of the results can be written. `files` are their paths in the folder.
+    /// Checks that files called `names` can be written.
     ///
     /// # Errors
     /// A file cannot be written, or exists already and may not be replaced.
-    pub fn check(&self, files: impl FnOnce(&Path) -> Vec<PathBuf>) -> Result<(), Failure> {
-        let Some(folder) = &self.out else {
-            return Ok(());
-        };
+    pub fn check(&self, names: &Names) -> Result<(), Failure> {
         let mut outputs = Outputs::new(self.force);
-        outputs.writes("--out", folder, Manner::Folder);
-        for file in files(folder) {
-            outputs.writes("--out", &file, Manner::Beside);
+        if let Some(folder) = &self.out {
+            outputs.writes("--out", folder, Manner::Folder);
+            add_folder(&mut outputs, folder, names);
         }
+        self.files.add_to(&mut outputs, names);
         Ok(outputs.check()?)
     }
 
-    /// Prints the results, as JSON or as text, and saves them to the folder; `save` returns the paths.
+    /// Gives the results on the terminal, in the folder and in files.
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn give(
-        &self,
-        json: impl FnOnce() -> Value,
-        text: impl FnOnce() -> String,
-        save: impl FnOnce(&Path) -> Result<Vec<PathBuf>, LabError>,
-    ) -> Result<(), Failure> {
-        let said = tell(self.json, json, text);
-        let Some(folder) = &self.out else {
-            return said;
-        };
-        for path in save(folder)? {
-            talk(&format!("note: {} written", path.display()));
-        }
-        said
+    pub fn give(&self, findings: &Findings) -> Result<(), Failure> {
+        self.files.give(findings, self.json, self.out.as_deref())
     }
 }
 
@@ -119,7 +108,7 @@ impl TimingOptions {
         name: &str,
         measure: impl FnOnce(&Plan, &dyn Fn(&str)) -> Result<Report, LabError>,
     ) -> Result<(), Failure> {
-        self.results.check(|folder| files(name, folder))?;
+        self.results.check(&lab::bench::names(name))?;
         use_threads(self.threads)?;
         self.print.apply();
         let plan = Plan {
@@ -128,8 +117,7 @@ impl TimingOptions {
             largest: self.largest,
         };
         let report = measure(&plan, &|text| talk(&format!("{name}: {text}")))?;
-        let (json, text) = (|| report.json(), || report.text());
-        self.results.give(json, text, |folder| report.save(folder))
+        self.results.give(&report.findings()?)
     }
 }
 

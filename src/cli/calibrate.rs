@@ -6,14 +6,14 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::arguments::{PrintOptions, ReplaceOptions, use_threads};
+use super::documents::{DocumentOptions, add_folder};
 use super::failure::Failure;
 use super::terminal::tell;
 use super::watch::Watch;
-use lab::calibrate::{Calibration, FILES, MOST_GENERATIONS, Target, run as search};
+use lab::calibrate::{Calibration, MOST_GENERATIONS, Target, names, run as search};
 use lab::machine::main_memory;
 use lab::sweep::Shard;
 use output::table::Table;
-use runs::outputs::Manner;
 use runs::store::Store;
 
 /// An example of a study, and of commands.
@@ -47,7 +47,7 @@ pub struct CalibrateOptions {
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
     /// Run nothing; list the measured values, the parameters and the number of runs
-    #[arg(long, conflicts_with = "shard")]
+    #[arg(long, conflicts_with_all = ["shard", "documents"])]
     pub list: bool,
     /// Generations of the search at most, in place of the study's: 1 tries a study, more go on with a finished search
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST_GENERATIONS as u64))]
@@ -58,6 +58,8 @@ pub struct CalibrateOptions {
     /// Number of runs to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = super::values::threads)]
     pub threads: Option<usize>,
+    #[command(flatten)]
+    pub files: DocumentOptions,
     #[command(flatten)]
     pub print: PrintOptions,
     #[command(flatten)]
@@ -90,15 +92,14 @@ pub fn run(options: &CalibrateOptions) -> Result<(), Failure> {
     for path in calibration.inputs() {
         outputs.reads("the study's", &path);
     }
-    for file in FILES {
-        // Another process may start the same study at the same time, so do not create trial files.
-        outputs.writes("--out", &folder.join(file), Manner::Beside);
-    }
+    add_folder(&mut outputs, &folder, &names());
+    outputs.may_replace(options.replace.force);
+    options.files.add_to(&mut outputs, &names());
     outputs.check()?;
     let store = Store::open(&folder)?;
     let shard = options.shard.unwrap_or(Shard::WHOLE);
-    let report = search(&calibration, shard, &store, &Watch::new())?;
-    tell(options.json, || report.json(), || report.markdown())
+    let found = search(&calibration, shard, &store, &Watch::new())?.findings()?;
+    options.files.give(&found, options.json, Some(&folder))
 }
 
 /// The measured values, the parameters and the number of runs.

@@ -6,13 +6,16 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde_json::Value;
 
+use super::arguments::ReplaceOptions;
+use super::documents::DocumentOptions;
 use super::failure::Failure;
 use super::inputs::tracks;
-use super::terminal::{talk, tell};
+use super::terminal::talk;
 use super::values::frame_rate;
-use lab::differences::{Differences, NotAReport, of_reports, of_tracks};
+use lab::differences::{Differences, NotAReport, names as file_names, of_reports, of_tracks};
 use lab::estimate::{compared, is_answer};
 use output::recording::Recorded;
+use runs::outputs::Outputs;
 use scenario::input;
 use scenario::kinds::is_scenario;
 use scenario::quote::shown;
@@ -31,6 +34,10 @@ pub struct CompareOptions {
     /// Frames per second of trajectory files [default: that of the file]
     #[arg(long, value_name = "N", value_parser = frame_rate)]
     pub fps: Option<f64>,
+    #[command(flatten)]
+    pub files: DocumentOptions,
+    #[command(flatten)]
+    pub replace: ReplaceOptions,
     /// Print one JSON object instead of text
     #[arg(long)]
     pub json: bool,
@@ -47,15 +54,22 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
         unit: options.unit.as_deref().and_then(Unit::named),
         fps: options.fps,
     };
-    let (a, b) = (open(&options.a, &read)?, open(&options.b, &read)?);
     let paths = [&options.a, &options.b];
+    let mut outputs = Outputs::new(options.replace.force);
+    outputs.reads("A,", paths[0]);
+    outputs.reads("B,", paths[1]);
+    options.files.add_to(&mut outputs, &file_names());
+    outputs.check()?;
+    let (a, b) = (open(&options.a, &read)?, open(&options.b, &read)?);
     let names = paths.map(|path| path.display().to_string());
     let [first, second] = names.each_ref().map(String::as_str);
     let differences: Differences = match (&a, &b) {
         (Input::Report(a), Input::Report(b)) if is_answer(a) && is_answer(b) => {
             let compared = compared([(first, a), (second, b)]);
             let compared = compared.map_err(|error| Failure::Input(error.to_string()))?;
-            return tell(options.json, || compared.json(), || compared.text());
+            return options
+                .files
+                .give(&compared.findings()?, options.json, None);
         }
         (Input::Report(a), Input::Report(b)) if is_answer(a) || is_answer(b) => {
             let (is, is_not) = if is_answer(a) {
@@ -101,7 +115,9 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
             )));
         }
     };
-    tell(options.json, || differences.json(), || differences.text())
+    options
+        .files
+        .give(&differences.findings()?, options.json, None)
 }
 
 /// Reads a file of any kind.

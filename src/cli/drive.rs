@@ -10,10 +10,13 @@ use super::failure::Failure;
 use super::inputs::scenario;
 use super::interrupt::Interrupt;
 use super::output::{check, recordings, trajectories};
+use super::reported::{Typed, Watch, complete, findings};
 use super::terminal::{talk, tell};
 use super::watch::Progress;
 use super::{memory, notes, results};
+use ::output::document::{Block, Document, Findings};
 use lab::machine::main_memory;
+use lab::report::Watched;
 use runs::case::Source;
 use runs::checkpoint::Checkpoint;
 use runs::drive::{End, Observer, Run};
@@ -27,24 +30,35 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     let writing = memory::of_writing(&options.output);
     let until = options.output.until.map(|secs| ("--until", secs));
     let mut outputs = Outputs::new(options.scene.program.force);
-    let whole = scenario(source, &options.scene, until, writing, &mut outputs)?;
+    let mut whole = scenario(source, &options.scene, until, writing, &mut outputs)?;
     check(outputs, &options.output, &whole)?;
+    let is_reported = options.output.files.are_given();
+    if is_reported {
+        complete(&mut whole)?;
+    }
     if let Some(warning) = of_step(&whole.scene) {
         talk(&format!("warning: {warning}"));
     }
+    let watched = is_reported.then(|| Watched::new(&whole, &[]));
     let run = Run::new(whole)?;
+    let typed = Typed {
+        source,
+        scene: &options.scene,
+        until: options.output.until,
+        at: &[],
+    };
     // A resumed run goes to the scenario's own end, if the whole scenario is valid.
     let is_cut = until.is_some() && options.output.checkpoint.checkpoint.is_some();
     let resumable = is_cut.then(|| {
         let mut inputs = Outputs::new(true);
         scenario(source, &options.scene, None, writing, &mut inputs).ok()
     });
-    go_on(
+    let started = Started {
         run,
-        resumable.flatten(),
-        &options.scene.program,
-        &options.output,
-    )
+        resumable: resumable.flatten(),
+        report: watched.map(|watched| (watched, typed)),
+    };
+    go_on(started, &options.scene.program, &options.output)
 }
 
 /// `sandbox resume`.
@@ -84,7 +98,12 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
     let mut outputs = Outputs::new(options.program.force);
     outputs.reads_and_replaces("the checkpoint", &options.file, "--checkpoint");
     check(outputs, &options.output, &run.scenario)?;
-    go_on(run, resumable.flatten(), &options.program, &options.output)
+    let started = Started {
+        run,
+        resumable: resumable.flatten(),
+        report: None,
+    };
+    go_on(started, &options.program, &options.output)
 }
 
 /// Rejects a checkpoint file that is larger than main memory. The memory that its run needs is checked after
@@ -102,17 +121,34 @@ fn fits_into_memory(file: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Runs to the end. If `--until` cuts the scenario short, checkpoints hold the whole scenario, `resumable`.
-fn go_on(
-    mut run: Run,
+/// A run that goes on to its end.
+struct Started<'a> {
+    run: Run,
+    /// The whole scenario, which checkpoints hold, if `--until` cuts it short.
     resumable: Option<Scenario>,
+    /// What a report needs, if one is asked for and the run begins now.
+    report: Option<(Watched, Typed<'a>)>,
+}
+
+/// Runs to the end.
+fn go_on(
+    started: Started,
     program: &ProgramOptions,
     options: &OutputOptions,
 ) -> Result<(), Failure> {
+    let Started {
+        mut run,
+        resumable,
+        mut report,
+    } = started;
     let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
     let checkpoints = Checkpoints::create(&options.checkpoint, resumable, &mut run);
     let progress = Progress::new(run.scenario.duration_secs);
-    let mut observers: Vec<Box<dyn Observer<Failure> + Send>> = vec![Box::new(progress)];
+    let mut observers: Vec<Box<dyn Observer<Failure> + Send + '_>> = vec![Box::new(progress)];
+    if let Some((watched, _)) = &mut report {
+        Watched::prepare(&mut run.simulation);
+        observers.push(Box::new(Watch(watched)));
+    }
     observers.extend(recordings(&options.record, &mut run, &interrupt)?);
     for trajectory in trajectories(&options.trajectory, &mut run)? {
         observers.push(Box::new(trajectory));
@@ -134,6 +170,12 @@ fn go_on(
         || results::text(&run, options.verbose),
     )?;
     finished.into_iter().collect::<Result<(), _>>()?;
+    if options.files.are_given() {
+        options.files.save(&match &report {
+            Some((watched, typed)) => findings(&run, watched, typed)?,
+            None => without_pictures(&run)?,
+        })?;
+    }
     match interrupt.exit_code() {
         Some(exit_code) if end == End::Interrupted => {
             let time = run.simulation.frame().clock.time();
@@ -141,4 +183,12 @@ fn go_on(
         }
         _ => Ok(()),
     }
+}
+
+/// The results of a run whose beginning was not seen: as on the terminal.
+fn without_pictures(run: &Run) -> Result<Findings, Failure> {
+    let text = results::text(run, false);
+    let lines = text.lines().map(str::to_owned).collect();
+    let title = format!("Results of the run {}", run.scenario.name);
+    results::findings(run, Document::of(title, vec![Block::Code(lines)]))
 }

@@ -6,19 +6,15 @@ use clap::Args;
 use serde_json::json;
 
 use super::arguments::{ErrorOptions, PrintOptions, SceneOptions, use_threads};
+use super::documents::{DocumentOptions, add_folder};
 use super::failure::Failure;
 use super::inputs::settings;
 use super::terminal::{talk, tell};
 use super::watch::Watch;
-use lab::curves::csv as curves_csv;
-use lab::estimate::{
-    Answer, Answers, Forecast, Question, Request, Validated, bound_sheet, curve_sheet, run as make,
-    sheet,
-};
+use lab::estimate::{Answer, Answers, Forecast, Question, Request, Validated, names, run as make};
 use lab::machine::main_memory;
-use output::plot::Print;
 use runs::case::Source;
-use runs::outputs::{Manner, Outputs};
+use runs::outputs::Outputs;
 use runs::store::Store;
 
 pub const EXAMPLES: &str = "\
@@ -35,11 +31,13 @@ pub struct EstimateOptions {
     #[command(flatten)]
     pub error: ErrorOptions,
     /// Run nothing; print how many runs and minutes are expected, from the finished runs of the folder
-    #[arg(long)]
+    #[arg(long, conflicts_with = "documents")]
     pub plan: bool,
     /// Folder for the results; runs finished there are not made again
     #[arg(long, value_name = "DIR", default_value = "estimate")]
     pub out: PathBuf,
+    #[command(flatten)]
+    pub files: DocumentOptions,
     #[command(flatten)]
     pub print: PrintOptions,
     #[command(flatten)]
@@ -73,26 +71,10 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
         outputs.reads("the scenario's", path);
     }
     let name = question.file_name();
-    let pictures = Print::of_program().extensions();
-    let pictures = pictures.map(|extension| format!(".{extension}"));
-    let pictures =
-        pictures.flat_map(|end| ["", "-curves", "-bounds"].map(|of| format!("{of}{end}")));
-    let tables = [
-        ".json",
-        ".csv",
-        "-steps.csv",
-        "-bounds.csv",
-        "-curves.csv",
-        ".md",
-    ];
-    for end in tables.into_iter().map(str::to_owned).chain(pictures) {
-        // Another process may make the same estimate at the same time, so do not create trial files.
-        outputs.writes(
-            "--out",
-            &options.out.join(format!("{name}{end}")),
-            Manner::Beside,
-        );
-    }
+    let names = names(&name);
+    add_folder(&mut outputs, &options.out, &names);
+    outputs.may_replace(program.force);
+    options.files.add_to(&mut outputs, &names);
     outputs.check()?;
     let store = Store::open(&options.out)?;
     let runs = make(&question, &[], &store, &Watch::new())?;
@@ -100,32 +82,10 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
         validation: Validated::of(&question)?,
         ..Answer::of(&runs)
     };
-    let mut files = vec![
-        (".json", format!("{:#}\n", answer.json()).into_bytes()),
-        (".md", answer.markdown().into_bytes()),
-    ];
-    if !answer.results.is_empty() {
-        files.push((".csv", answer.csv()?));
-        files.push(("-steps.csv", answer.steps_csv()?));
-    }
-    if !answer.bounds.is_empty() {
-        files.push(("-bounds.csv", answer.bounds_csv()?));
-    }
-    if let Some((sheet, curves)) = curve_sheet(&runs, &answer) {
-        files.push(("-curves.csv", curves_csv(&curves)?));
-        sheet.save(&store.path(&format!("{name}-curves")))?;
-    }
-    for (end, contents) in files {
-        let path = store.write(&format!("{name}{end}"), &contents)?;
-        talk(&format!("note: {} written", path.display()));
-    }
-    if let Some(sheet) = bound_sheet(&answer) {
-        sheet.save(&store.path(&format!("{name}-bounds")))?;
-    }
-    if !answer.results.is_empty() {
-        sheet(&runs, &answer).save(&store.path(&name))?;
-    }
-    tell(program.json, || answer.json(), || answer.text())?;
+    let findings = answer.findings(&name, &runs)?;
+    options
+        .files
+        .give(&findings, program.json, Some(&options.out))?;
     match &answer.stopped {
         None if answer.without.is_empty() => Ok(()),
         None => Err(Failure::Output(format!(

@@ -6,12 +6,16 @@ use clap::Args;
 use serde_json::json;
 
 use super::arguments::{SceneOptions, use_threads};
+use super::documents::DocumentOptions;
 use super::failure::Failure;
 use super::terminal::say;
 use super::values::{id, is_page, recording, seconds};
 use super::watch::Progress;
 use super::{memory, moment, output};
+use ::output::document::{Block, Document, Findings, Names};
+use ::output::html::facts;
 use ::output::recording::check_enabled;
+use ::output::table::Table;
 use engine::breakdown::Breakdown;
 use engine::pairs::Precision;
 use engine::simulation::Simulation;
@@ -37,7 +41,12 @@ pub struct InspectOptions {
     /// Also write this moment as a recording for the Rerun viewer (.rrd), or as a page (.html)
     #[arg(long, value_name = "FILE", value_parser = recording())]
     pub save: Option<PathBuf>,
+    #[command(flatten)]
+    pub files: DocumentOptions,
 }
+
+/// The name of the findings.
+const NAME: &str = "inspected";
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     use_threads(options.scene.program.threads)?;
@@ -51,6 +60,8 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     if let Some(path) = &options.save {
         outputs.writes("--save", path, Manner::InPlace);
     }
+    let names = Names::new(NAME, &[NAME], &[]);
+    options.files.add_to(&mut outputs, &names);
     outputs.check()?;
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     // The rest density depends on the density's history, so every frame needs the density.
@@ -62,6 +73,9 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
         let ids = inspected.iter().map(|&(id, _)| id).collect();
         output::save_moment(path, &scenario, &simulation, ids)?;
     }
+    if options.files.are_given() {
+        options.files.save(&findings(&simulation, &inspected)?)?;
+    }
     let clock = simulation.frame().clock;
     let (time, frame) = (clock.time(), clock.frame());
     let as_json = options.scene.program.json;
@@ -71,10 +85,7 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
         false => format!("t = {time:.2} s, frame {frame}\n"),
     })?;
     for (k, &(id, i)) in inspected.iter().enumerate() {
-        let breakdown = Breakdown::of(&simulation, i).ok_or_else(|| {
-            let reason = format!("--agent {id}: the frame has no densities");
-            Failure::Output(reason)
-        })?;
+        let breakdown = breakdown(&simulation, id, i)?;
         say(match as_json {
             true => format!("{}{}", if k > 0 { "," } else { "" }, json!(breakdown)),
             false => printable(&format!("\n{breakdown}")),
@@ -87,6 +98,43 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
         )),
         false => Ok(()),
     }
+}
+
+fn breakdown(simulation: &Simulation, id: u32, i: usize) -> Result<Breakdown, Failure> {
+    Breakdown::of(simulation, i).ok_or_else(|| {
+        let reason = format!("--agent {id}: the frame has no densities");
+        Failure::Output(reason)
+    })
+}
+
+/// The breakdowns of agents, given by their ids and indices, for readers and programs: a row for each number.
+fn findings(simulation: &Simulation, inspected: &[(u32, usize)]) -> Result<Findings, Failure> {
+    let clock = simulation.frame().clock;
+    let (time, frame) = (clock.time(), clock.frame());
+    let mut blocks = vec![Block::Text(format!("t = {time:.2} s, frame {frame}"))];
+    let (mut agents, mut rows) = (Vec::new(), Vec::new());
+    for &(id, i) in inspected {
+        let breakdown = breakdown(simulation, id, i)?;
+        let text = breakdown.to_string();
+        blocks.push(Block::Heading(format!("Agent {id}")));
+        blocks.push(Block::Code(text.lines().map(str::to_owned).collect()));
+        let data = json!(breakdown);
+        rows.extend(
+            facts(&data)
+                .into_iter()
+                .map(|(name, value)| (id, name, value)),
+        );
+        agents.push(data);
+    }
+    let table = Table::of(&rows)
+        .column("agent", |(id, ..)| *id)
+        .column("quantity", |(_, name, _)| name.as_str())
+        .column("value", |(.., value)| value.as_str())
+        .table();
+    let data = json!({ "agents": agents, "frame": frame, "time_secs": time });
+    let document = Document::of("Forces on inspected agents", blocks);
+    let findings = Findings::new(NAME, document, data).with_table(NAME, &table);
+    findings.map_err(|error| Failure::Output(error.to_string()))
 }
 
 /// Advances to the time `at`, seconds. The state is that of a normal run; only the last frame is evaluated in double

@@ -10,6 +10,7 @@ mod tips;
 mod values;
 
 mod arguments;
+mod documents;
 mod inputs;
 mod interrupt;
 mod memory;
@@ -23,6 +24,7 @@ mod frames;
 mod moment;
 mod notes;
 mod output;
+mod reported;
 
 mod accuracy;
 mod bench;
@@ -48,7 +50,8 @@ pub use arguments::PrintOptions;
 pub use bench::{ResultOptions, TimingOptions};
 pub use failure::Failure;
 pub use results::json as json_report;
-pub use update::UpdateOptions;
+pub use update::{CaseOptions, UpdateOptions};
+pub use watch::Watch;
 
 use std::ffi::OsString;
 use std::io::Write;

@@ -1,6 +1,5 @@
 //! `sandbox report`: the document that is handed in with a run or a study.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -9,20 +8,20 @@ use serde_json::{Value, json};
 use super::arguments::{SceneOptions, use_threads};
 use super::failure::Failure;
 use super::inputs::scenario;
-use super::moment::{none_left, to_the_end};
+use super::moment::to_the_end;
+use super::reported::{Typed, Watch, complete, findings, names, words};
 use super::terminal::tell;
 use super::values::{document, seconds};
-use lab::report::{InputFile, Sources, Watched, of_run, of_study};
+use lab::report::{Watched, of_study};
 use lab::sweep::{Gathered, Study};
-use output::document::Document;
+use output::document::Findings;
 use runs::case::Source;
-use runs::drive::{End, Observer, Run};
+use runs::drive::{Observer, Run};
 use runs::outputs::{Manner, Outputs};
 use runs::store::Store;
 use scenario::input::is_standard_input;
-use scenario::measurements::Measurement;
 use scenario::quote::shown;
-use scenario::{Scenario, read_text};
+use scenario::read_text;
 
 pub const EXAMPLES: &str = "\
 Examples:
@@ -40,7 +39,7 @@ pub struct ReportOptions {
     pub run: String,
     #[command(flatten)]
     pub scene: SceneOptions,
-    /// The report (.html or .pdf) [default: the name of the run with .html, in the working directory]
+    /// The report (.html, .pdf or .md), its table (.csv) or all values (.json) [default: the name of the run with .html, in the working directory]
     #[arg(short, long, value_name = "FILE", value_parser = document())]
     pub out: Option<PathBuf>,
     /// Time at which the run ends, seconds [default: the scenario's duration]
@@ -66,11 +65,12 @@ pub fn run(options: &ReportOptions) -> Result<(), Failure> {
     outputs.writes("--out", &out, Manner::File);
     let report = match study(options)? {
         Some(study) => of_results(&study, options, outputs)?,
-        None => of_scenario(options, outputs)?,
+        None => of_scenario(options, (outputs, &out))?,
     };
     report.save(&out)?;
     let file = out.display().to_string();
-    let (title, blocks) = (&report.title, report.blocks.len());
+    let document = &report.document;
+    let (title, blocks) = (&document.title, document.blocks.len());
     tell(
         program.json,
         || json!({"file": file, "title": title, "parts": blocks}),
@@ -103,8 +103,9 @@ fn of_results(
     study: &Study,
     options: &ReportOptions,
     mut outputs: Outputs,
-) -> Result<Document, Failure> {
-    if words(options).len() > 1 || !options.at.is_empty() {
+) -> Result<Findings, Failure> {
+    let given = words(&options.run, &options.scene, options.until);
+    if given.len() > 1 || !options.at.is_empty() {
         return Err(Failure::Input(format!(
             "{}: a study has its own settings and no pictures; give its file, --results and --out alone",
             options.run
@@ -125,16 +126,17 @@ fn of_results(
         )));
     }
     let gathered = Gathered::of(study, &store);
-    let command = format!("sandbox sweep {} --out {}", options.run, folder.display());
-    let report = format!(
-        "sandbox report {} --results {}",
-        options.run,
-        folder.display()
-    );
-    Ok(of_study(&gathered, [&command, &report])?)
+    let document = of_study(&gathered, Path::new(&options.run), &folder)?;
+    Ok(Findings {
+        document,
+        ..gathered.findings(None)?
+    })
 }
 
-fn of_scenario(options: &ReportOptions, mut outputs: Outputs) -> Result<Document, Failure> {
+fn of_scenario(
+    options: &ReportOptions,
+    (mut outputs, out): (Outputs, &Path),
+) -> Result<Findings, Failure> {
     if let Some(results) = &options.results {
         let reason = format!(
             "--results {}: is for studies, not for scenarios",
@@ -145,6 +147,9 @@ fn of_scenario(options: &ReportOptions, mut outputs: Outputs) -> Result<Document
     let source = Source::named(&options.run);
     let until = options.until.map(|secs| ("--until", secs));
     let mut whole = scenario(&source, &options.scene, until, 0, &mut outputs)?;
+    for file in names(&whole).beside(out) {
+        outputs.writes("--out", &file, Manner::Beside);
+    }
     outputs.check()?;
     let ends = whole.duration_secs;
     if let Some(late) = options.at.iter().find(|&&at| at > ends) {
@@ -152,133 +157,17 @@ fn of_scenario(options: &ReportOptions, mut outputs: Outputs) -> Result<Document
             "--at {late}: the run ends at {ends} s; give an earlier time, or a later end with --until"
         )));
     }
-    let mut files: Vec<InputFile> = whole.files.iter().map(input).collect();
-    if let Source::File(path) = &source {
-        files.insert(0, input(&("scenario", path.clone())));
-    }
-    files.extend(
-        options
-            .scene
-            .geometry
-            .iter()
-            .map(|path| input(&("--geometry", path.clone()))),
-    );
     complete(&mut whole)?;
     let mut watched = Watched::new(&whole, &options.at);
     let mut run = Run::new(whole)?;
     Watched::prepare(&mut run.simulation);
     let watch: Box<dyn Observer<Failure> + Send> = Box::new(Watch(&mut watched));
     to_the_end(&mut run, [watch])?;
-    let words = words(options);
-    let command = match &source {
-        Source::BuiltIn(_) => format!("sandbox {}", words.join(" ")),
-        Source::File(_) => format!("sandbox run {}", words.join(" ")),
+    let typed = Typed {
+        source: &source,
+        scene: &options.scene,
+        until: options.until,
+        at: &options.at,
     };
-    let at = options.at.iter().map(|at| format!("--at {at}"));
-    let report = words.iter().cloned().chain(at).collect::<Vec<_>>();
-    let report = format!("sandbox report {}", report.join(" "));
-    let sources = Sources {
-        command: &command,
-        report: &report,
-        files,
-    };
-    Ok(of_run(&run, &watched, sources)?)
-}
-
-/// A file of the run; `key` names it.
-fn input((key, path): &(&'static str, PathBuf)) -> InputFile {
-    InputFile {
-        what: (*key).to_owned(),
-        path: path.clone(),
-    }
-}
-
-/// Lets the report watch the run, and ends it if no agents are left for a picture.
-struct Watch<'a>(&'a mut Watched);
-
-impl Observer<Failure> for Watch<'_> {
-    fn observe(&mut self, run: &Run, _: f64, then: ControlFlow<End>) -> Result<(), Failure> {
-        let simulation = &run.simulation;
-        self.0.see(simulation);
-        let Some(missing) = self.0.missing() else {
-            return Ok(());
-        };
-        let is_empty = simulation.frame().agents.count_present() == 0;
-        let option = format!("--at {missing}");
-        match then {
-            _ if is_empty && !simulation.expects_agents() => {
-                Err(none_left((&option, missing), simulation))
-            }
-            ControlFlow::Break(end) if end != End::Interrupted => Err(Failure::Input(format!(
-                "{option}: the run ends at {:.2} s: {}",
-                simulation.frame().clock.time(),
-                run.reason()
-            ))),
-            _ => Ok(()),
-        }
-    }
-}
-
-/// Adds the measurements that every report has. They change no result.
-fn complete(scenario: &mut Scenario) -> Result<(), Failure> {
-    let has = |is: fn(&Measurement) -> bool| scenario.measurements.iter().any(is);
-    let has_journeys = !scenario.scene.journeys.journeys.is_empty();
-    let wanted = [
-        (
-            "egress",
-            has_journeys && !has(|one| matches!(one, Measurement::Egress(_))),
-        ),
-        (
-            "exposure",
-            !has(|one| matches!(one, Measurement::Exposure(_))),
-        ),
-        (
-            "service_levels",
-            !has(|one| matches!(one, Measurement::ServiceLevels(_))),
-        ),
-    ];
-    for (name, _) in wanted.into_iter().filter(|(_, is_wanted)| *is_wanted) {
-        let keys = serde_json::from_value(json!({ name: {} }));
-        let keys = keys.map_err(|error| Failure::Input(format!("{name}: {error}")))?;
-        scenario.measurements.push(keys);
-    }
-    Ok(())
-}
-
-/// The scenario and its settings, as typed into a shell.
-fn words(options: &ReportOptions) -> Vec<String> {
-    let scene = &options.scene;
-    let seed = scene.changes.seed.map(|seed| seed.to_string());
-    let until = options.until.map(|until| until.to_string());
-    let geometry = scene.geometry.as_ref();
-    let geometry = geometry.map(|path| path.display().to_string());
-    let given = [
-        ("--profile", scene.profile.clone()),
-        ("--seed", seed),
-        ("--preset", scene.preset.clone()),
-        ("--time-step", scene.time_step.clone()),
-        ("--geometry", geometry),
-        ("--until", until),
-    ];
-    let given = given
-        .into_iter()
-        .filter_map(|(name, value)| Some((name, value?)));
-    let set = scene
-        .changes
-        .set
-        .iter()
-        .map(|value| ("--set", value.clone()));
-    let words = given
-        .chain(set)
-        .map(|(name, value)| format!("{name} {}", quoted(&value)));
-    [quoted(&options.run)].into_iter().chain(words).collect()
-}
-
-/// A word as a shell reads it.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "+-=_./,:%".contains(c);
-    match word.chars().all(is_plain) && !word.is_empty() {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', r"'\''")),
-    }
+    findings(&run, &watched, &typed)
 }

@@ -4,15 +4,17 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use super::arguments::ErrorOptions;
+use super::documents::add_folder;
 use super::estimate::all_reached;
 use super::failure::Failure;
-use super::terminal::say_text;
+use super::terminal::talk;
 use super::update::CaseOptions;
 use super::watch::Watch;
 use lab::estimate::Questions;
 use lab::machine::main_memory;
-use lab::reproduce::{PRODUCTS, Product, estimated, reproduce};
+use lab::reproduce::{ESTIMATED, PRODUCTS, Product, estimated, reproduce};
 use lab::sweep::Study;
+use output::document::{Findings, Names};
 use runs::store::Store;
 
 #[derive(Args)]
@@ -71,35 +73,46 @@ pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
     };
     let products: Vec<&Product> = PRODUCTS.iter().filter(wanted).collect();
     let names: Vec<&str> = products.iter().map(|product| product.name).collect();
-    let store = options.cases.store(&names)?;
-    let texts = reproduce(&products, options.seeds, &store, &Watch::new())?;
-    let said = texts.iter().try_for_each(|text| say_text(text));
-    options.cases.document.put(names.into_iter().zip(&texts))?;
+    let cases = &options.cases;
+    cases.apply(&names)?;
+    let files: Vec<Names> = products.iter().map(|product| product.names()).collect();
+    let mut outputs = cases.outputs([]);
+    for files in &files {
+        add_folder(&mut outputs, &cases.out, files);
+    }
+    outputs.may_replace(cases.replace.force);
+    cases
+        .files
+        .add_to(&mut outputs, &Names::joined(TITLE, &files));
+    outputs.check()?;
+    let store = Store::open(&cases.out)?;
+    let found = reproduce(&products, options.seeds, &store, &Watch::new())?;
+    for one in &found {
+        one.write(&cases.out)?;
+    }
+    let folder = cases.out.display();
+    talk(&format!("note: {} are in {folder}", names.join(", ")));
+    let all = Findings::joined(TITLE, "Tables and figures of the paper", found);
+    let said = cases.files.give(&all, cases.json, None);
+    cases.document.put(all.document.parts(TITLE))?;
     said
 }
 
+/// The name of all products.
+const TITLE: &str = "reproduction";
+
 /// Table 1 with the errors asked for.
 fn estimate(options: &ReproduceOptions) -> Result<(), Failure> {
-    /// The name of the table in documents and files.
-    const TABLE: &str = "table1-estimate";
     if options.what != ["table1"] || options.error.errors.is_empty() {
         let reason = "--error needs rows that have the same results; give it with table1 alone";
         return Err(Failure::Input(reason.to_owned()));
     }
-    options.cases.check(&[TABLE])?;
+    let cases = &options.cases;
+    cases.apply(&[ESTIMATED])?;
     let study = Study::built_in("table1", None, main_memory())?;
     let questions = Questions::new(&study, &options.error.request())?;
-    let store = Store::open(&options.cases.out)?;
+    let store = cases.open(cases.outputs([]), &questions.files())?;
     let answers = questions.answer(&store, &Watch::new())?;
-    let text = estimated(&answers)?;
-    answers.write(&store)?;
-    let costs = answers.costs();
-    store.write(
-        &format!("{TABLE}.md"),
-        format!("{text}\n{costs}").as_bytes(),
-    )?;
-    let said = say_text(&format!("{text}\n{costs}"));
-    options.cases.document.put([(TABLE, &text)])?;
-    said?;
+    cases.give(&estimated(&answers)?)?;
     all_reached(&answers)
 }

@@ -5,9 +5,12 @@ use std::collections::BTreeMap;
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 
+use super::failure::Failure;
 use engine::scene::{Group, Scene};
 use lab::reproduce::published_for;
+use output::document::{Document, Findings};
 use output::results as tables;
+use output::table::Table;
 use runs::drive::{End, Run};
 use runs::identity::Identity;
 use runs::summary::{JourneyResult, PlaceResult, Summary, value};
@@ -33,6 +36,19 @@ pub fn json(run: &Run) -> Value {
     report["real_time_factor"] = json!(real_time_factor);
     report["stages_ms"] = Value::Object(stages.collect::<Map<_, _>>());
     report
+}
+
+/// The results of a run with this document: a table of its values, and everything for programs.
+pub fn findings(run: &Run, document: Document) -> Result<Findings, Failure> {
+    let metrics = run.metrics.results(&run.simulation);
+    let table = Table::of(&metrics)
+        .column("measurement", |metric| metric.name.as_str())
+        .column("value", |metric| metric.value)
+        .column("unit", |metric| metric.unit)
+        .table();
+    let name = &run.scenario.name;
+    let findings = Findings::new(name, document, json(run)).with_table(name, &table);
+    findings.map_err(|error| Failure::Output(error.to_string()))
 }
 
 /// The least width of names.

@@ -3,10 +3,9 @@
 use clap::Args;
 
 use super::failure::Failure;
-use super::terminal::say_text;
 use super::update::CaseOptions;
 use super::watch::Watch;
-use lab::stress::{Detail, PARTS, stress};
+use lab::stress::{Detail, PARTS, names, stress};
 
 #[derive(Args)]
 pub struct StressOptions {
@@ -18,15 +17,10 @@ pub struct StressOptions {
 }
 
 pub fn run(options: &StressOptions) -> Result<(), Failure> {
-    let store = options.cases.store(&PARTS)?;
+    let store = options.cases.store(&PARTS, &names())?;
     let detail = Detail::read(options.quick)?;
     let report = stress(&detail, &store, &Watch::new())?;
-    let parts = report.parts();
-    let said = parts
-        .iter()
-        .try_for_each(|text| say_text(&format!("{text}\n")));
-    options.cases.document.put(PARTS.into_iter().zip(parts))?;
-    said?;
+    options.cases.give(&report.findings(&detail)?)?;
     match report.failures() {
         none if none.is_empty() => Ok(()),
         failures => Err(Failure::Output(failures.join("\n"))),

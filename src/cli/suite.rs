@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use super::arguments::{ChangeOptions, ReplaceOptions};
+use super::arguments::ChangeOptions;
 use super::failure::Failure;
-use super::terminal::{say_text, talk};
+use super::terminal::talk;
 use super::update::CaseOptions;
 use super::watch::Watch;
 use lab::suite::{Chosen, Judged, Planned, Status, Suite};
@@ -67,8 +67,6 @@ pub struct SuiteOptions {
     pub changes: ChangeOptions,
     #[command(flatten)]
     pub cases: CaseOptions,
-    #[command(flatten)]
-    pub replace: ReplaceOptions,
 }
 
 pub fn verify(options: &VerifyOptions) -> Result<(), Failure> {
@@ -148,7 +146,7 @@ fn judge(asked: &Asked, options: &SuiteOptions) -> Result<(), Failure> {
         Err(error) => Err(unusable(folder, error)),
     });
     let data = data.transpose()?;
-    options.cases.check(&[&suite.name])?;
+    options.cases.apply(&[&suite.name])?;
     let planned = suite.planned(&Chosen {
         cases,
         profiles: &options.profile,
@@ -157,14 +155,14 @@ fn judge(asked: &Asked, options: &SuiteOptions) -> Result<(), Failure> {
         settings: &settings,
         data: data.as_deref(),
     })?;
-    check_outputs(&planned, asked, options)?;
-    let store = Store::open(&options.cases.out)?;
+    let store = opened(&planned, asked, options)?;
     let report = planned.run(asked.judged, &store, &Watch::new())?;
-    let text = report.markdown();
-    let said = say_text(&format!("{text}\n"));
-    if options.profile.is_empty() {
-        options.cases.document.put([(&suite.name, &text)])?;
-    }
+    let findings = report.findings()?;
+    // Results of other profiles do not belong in the document, only in the status beside it.
+    let said = match options.profile.is_empty() {
+        true => options.cases.give(&findings),
+        false => options.cases.show(&findings),
+    };
     if let Some(file) = status
         && let Some(status) = Status::updated(&file, &report)
     {
@@ -216,22 +214,16 @@ fn status(asked: &Asked, options: &SuiteOptions) -> Result<Option<PathBuf>, Fail
     }
 }
 
-/// Rejects results that cannot be written or would replace an input. In a folder that does not belong to a study,
-/// existing files with the results' names are replaced only with --force.
-fn check_outputs(planned: &Planned, asked: &Asked, options: &SuiteOptions) -> Result<(), Failure> {
-    let folder = &options.cases.out;
-    let mut outputs = options.replace.outputs(folder);
-    if let Some(file) = asked.file {
-        outputs.reads("the suite", file);
+/// The folder for the results, after a check that they can be written and replace no input.
+fn opened(planned: &Planned, asked: &Asked, options: &SuiteOptions) -> Result<Store, Failure> {
+    let own = asked.file.map(|file| ("the suite", file));
+    let inputs = planned.study.inputs();
+    let inputs = inputs.into_iter().map(|path| ("the suite's", path));
+    let mut outputs = options.cases.outputs(own.into_iter().chain(inputs));
+    for picture in planned.pictures() {
+        outputs.writes("--out", &options.cases.out.join(picture), Manner::Beside);
     }
-    for path in planned.study.inputs() {
-        outputs.reads("the suite's", path);
-    }
-    for file in planned.files(asked.judged) {
-        // Another process may run the same suite at the same time, so do not create trial files.
-        outputs.writes("--out", &folder.join(file), Manner::Beside);
-    }
-    Ok(outputs.check()?)
+    options.cases.open(outputs, &planned.names(asked.judged))
 }
 
 fn unusable(folder: &Path, why: impl std::fmt::Display) -> Failure {

@@ -6,15 +6,18 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::arguments::{ErrorOptions, PrintOptions, ReplaceOptions, use_threads};
+use super::documents::{DocumentOptions, add_folder, show};
 use super::estimate::all_reached;
 use super::failure::Failure;
 use super::terminal::{talk, tell};
 use super::watch::Watch;
 use lab::estimate::Questions;
 use lab::machine::main_memory;
+use lab::report::of_study;
 use lab::sweep::{Drawing, Gathered, Shard, State, Study, run as run_shard};
+use output::document::Findings;
 use runs::job::Tally;
-use runs::outputs::{Manner, Outputs};
+use runs::outputs::Outputs;
 use runs::store::Store;
 
 /// An example of a study, and of commands.
@@ -58,6 +61,8 @@ pub struct SweepOptions {
     #[arg(long, value_name = "KEY[,KEY]", value_delimiter = ',', conflicts_with_all = ["list", "shard"])]
     pub over: Vec<String>,
     #[command(flatten)]
+    pub files: DocumentOptions,
+    #[command(flatten)]
     pub error: ErrorOptions,
     #[command(flatten)]
     pub print: PrintOptions,
@@ -89,6 +94,10 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     if options.error.is_given() {
         return estimate(&study, &folder, options);
     }
+    if (options.list || options.shard.is_some()) && options.files.are_given() {
+        let reason = "-o: the results are those of all cells; give it without --list and --shard, or with --merge";
+        return Err(Failure::Input(reason.to_owned()));
+    }
     if options.list {
         return list(&Gathered::of(&study, &store), options);
     }
@@ -99,13 +108,13 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     }
     check_outputs(&study, &store, options)?;
     if options.merge {
-        return merge(&study, &store, &drawing, options.json);
+        return merge(&study, &store, &drawing, options);
     }
     let store = Store::open(&folder)?;
     let shard = options.shard.unwrap_or(Shard::WHOLE);
     let tally = run_shard(&study, shard, &store, &Watch::new())?;
     if options.shard.is_none() {
-        return merge(&study, &store, &drawing, options.json);
+        return merge(&study, &store, &drawing, options);
     }
     tell(
         options.json,
@@ -126,19 +135,16 @@ fn estimate(study: &Study, folder: &Path, options: &SweepOptions) -> Result<(), 
         ));
     }
     let questions = Questions::new(study, &options.error.request())?;
+    let names = questions.files();
     let mut outputs = inputs(study, options, folder);
-    for file in questions.files() {
-        outputs.writes("--out", &folder.join(file), Manner::Beside);
-    }
+    add_folder(&mut outputs, folder, &names);
+    outputs.may_replace(options.replace.force);
+    options.files.add_to(&mut outputs, &names);
     outputs.check()?;
     let store = Store::open(folder)?;
     let answers = questions.answer(&store, &Watch::new())?;
-    let table = answers.write(&store)?;
-    talk(&format!(
-        "note: {} and other files written",
-        table.display()
-    ));
-    tell(options.json, || answers.json(), || answers.text())?;
+    let findings = answers.findings()?;
+    options.files.give(&findings, options.json, Some(folder))?;
     all_reached(&answers)
 }
 
@@ -158,10 +164,12 @@ fn inputs(study: &Study, options: &SweepOptions, folder: &Path) -> Outputs {
 /// existing files with the results' names are replaced only with --force.
 fn check_outputs(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Failure> {
     let mut outputs = inputs(study, options, store.folder());
-    for file in study.files().into_iter().chain(study.curve_files()) {
-        // Another process may start the same study at the same time, so do not create trial files.
-        outputs.writes("--out", &store.folder().join(file), Manner::Beside);
-    }
+    add_folder(&mut outputs, store.folder(), &study.names());
+    outputs.may_replace(options.replace.force);
+    // The files have the report.
+    options
+        .files
+        .add_to(&mut outputs, &study.names().numbered());
     Ok(outputs.check()?)
 }
 
@@ -179,15 +187,25 @@ fn list(gathered: &Gathered, options: &SweepOptions) -> Result<(), Failure> {
 }
 
 /// Merges the finished cells.
-fn merge(study: &Study, store: &Store, drawing: &Drawing, as_json: bool) -> Result<(), Failure> {
+fn merge(
+    study: &Study,
+    store: &Store,
+    drawing: &Drawing,
+    options: &SweepOptions,
+) -> Result<(), Failure> {
     let gathered = Gathered::of(study, store);
     // The results are written even if the requested picture cannot be drawn.
     let sheet = gathered.sheet(drawing);
     let drawn = sheet.as_ref().ok().and_then(Option::as_ref);
-    for path in gathered.write(store, drawn)? {
-        talk(&format!("note: {} written", path.display()));
+    let findings = gathered.findings(drawn.cloned())?;
+    show(&findings, options.json, Some(store.folder()))?;
+    if options.files.are_given() {
+        let document = of_study(&gathered, &options.file, store.folder())?;
+        options.files.save(&Findings {
+            document,
+            ..findings
+        })?;
     }
-    tell(as_json, || gathered.json(), || gathered.text())?;
     sheet?;
     let (mut missing, mut failed) = (Vec::new(), Vec::new());
     for (cell, state) in study.cells.iter().zip(&gathered.states) {

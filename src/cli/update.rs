@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::arguments::{PrintOptions, use_threads};
+use super::arguments::{PrintOptions, ReplaceOptions, use_threads};
+use super::documents::{DocumentOptions, add_folder};
 use super::failure::Failure;
 use super::values::threads;
-use lab::reproduce::put_between;
+use output::document::{Findings, Names, put_between};
 use runs::outputs::{Manner, Outputs, write_whole};
 use runs::store::Store;
 use scenario::input;
@@ -28,6 +29,13 @@ pub struct CaseOptions {
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     #[command(flatten)]
+    pub files: DocumentOptions,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub replace: ReplaceOptions,
+    #[command(flatten)]
     pub document: UpdateOptions,
     /// Number of cases to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = threads)]
@@ -37,18 +45,59 @@ pub struct CaseOptions {
 }
 
 impl CaseOptions {
-    /// Opens the folder for the results, after a check that the document can be updated, has a place for one of the
-    /// `tables` at least, and that no result replaces it.
-    pub fn store(&self, tables: &[&str]) -> Result<Store, Failure> {
-        self.check(tables)?;
-        Ok(Store::open(&self.out)?)
+    /// Applies the options, and opens the folder for the results, after a check that the document can be updated, has a
+    /// place for one of the `tables` at least, and that results called `names` replace no other file.
+    pub fn store(&self, tables: &[&str], names: &Names) -> Result<Store, Failure> {
+        self.apply(tables)?;
+        self.open(self.outputs([]), names)
     }
 
-    /// Applies the options, and makes the checks of [`store`](Self::store).
-    pub fn check(&self, tables: &[&str]) -> Result<(), Failure> {
+    /// Applies the options, and checks that the document can be updated.
+    pub fn apply(&self, tables: &[&str]) -> Result<(), Failure> {
         use_threads(self.threads)?;
         self.print.apply();
         self.document.check(Some(&self.out), tables)
+    }
+
+    /// The files of a command that reads these inputs.
+    pub fn outputs<'a>(&self, inputs: impl IntoIterator<Item = (&'a str, &'a Path)>) -> Outputs {
+        let mut outputs = self.replace.outputs(&self.out);
+        for (name, path) in inputs {
+            outputs.reads(name, path);
+        }
+        outputs
+    }
+
+    /// Opens the folder for the results, after a check that the outputs and files called `names` replace no other file.
+    pub fn open(&self, mut outputs: Outputs, names: &Names) -> Result<Store, Failure> {
+        add_folder(&mut outputs, &self.out, names);
+        outputs.may_replace(self.replace.force);
+        self.files.add_to(&mut outputs, names);
+        outputs.check()?;
+        Ok(Store::open(&self.out)?)
+    }
+
+    /// Gives the results on the terminal, in the folder and in files.
+    pub fn show(&self, findings: &Findings) -> Result<(), Failure> {
+        self.files.give(findings, self.json, Some(&self.out))
+    }
+
+    /// The same, and updates the document.
+    pub fn give(&self, findings: &Findings) -> Result<(), Failure> {
+        self.give_parts(findings, |_| true)
+    }
+
+    /// The same, and updates these parts of the document.
+    pub fn give_parts(
+        &self,
+        findings: &Findings,
+        is_updated: impl Fn(&str) -> bool,
+    ) -> Result<(), Failure> {
+        let shown = self.show(findings);
+        let parts = findings.document.parts(&findings.name).into_iter();
+        self.document
+            .put(parts.filter(|(name, _)| is_updated(name)))?;
+        shown
     }
 }
 

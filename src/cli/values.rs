@@ -9,6 +9,7 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use super::failure::Failure;
 use analysis::crossing::{Line, Passages};
 use engine::scene::Region;
+use output::document::ENDINGS;
 use scenario::trajectories::FRAME_RATES;
 
 /// A number in a range; the error is `otherwise`.
@@ -203,14 +204,14 @@ pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
-/// A path with the extension of a report.
+/// A path with the extension of a file with results.
 pub fn document() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| {
         let extension = path.extension().unwrap_or_default();
-        let mut known = ["html", "pdf"].iter();
+        let mut known = ENDINGS.iter();
         match known.any(|known| extension.eq_ignore_ascii_case(known)) {
             true => Ok(path),
-            false => Err("a report's name must end in .html or .pdf"),
+            false => Err("the name must end in .html, .pdf, .md, .csv or .json"),
         }
     })
 }

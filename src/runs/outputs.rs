@@ -72,6 +72,8 @@ struct Output {
     option: &'static str,
     path: PathBuf,
     manner: Manner,
+    /// Whether it may replace an existing file.
+    force: bool,
 }
 
 impl Output {
@@ -126,7 +128,13 @@ impl Outputs {
             option,
             path: path.to_owned(),
             manner,
+            force: self.force,
         });
+    }
+
+    /// Whether the files that are added from now on may replace existing ones.
+    pub fn may_replace(&mut self, force: bool) {
+        self.force = force;
     }
 
     /// Checks that all outputs can be written, and leaves everything unchanged: existing files are opened but not
@@ -159,7 +167,7 @@ impl Outputs {
                 }
             }
             let is_folder = output.manner == Manner::Folder;
-            if existed[k] && !is_folder && !may_replace && !self.force {
+            if existed[k] && !is_folder && !may_replace && !output.force {
                 return Err(OutputsError::Exists(output.name()));
             }
         }

@@ -19,7 +19,8 @@ pub fn read(text: &str) -> u64 {
             return 0;
         }
     };
-    assert!(!study.name.is_empty() && study.files().iter().all(|file| !file.contains('/')));
+    let files = study.names().in_folder();
+    assert!(!study.name.is_empty() && files.iter().all(|file| !file.contains('/')));
     assert_eq!(study.cells.len() % study.seeds, 0);
     for (k, cell) in study.cells.iter().enumerate() {
         assert_eq!(cell.number, k + 1);

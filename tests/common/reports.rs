@@ -13,13 +13,17 @@ pub fn quick() -> Plan {
 }
 
 pub fn rows(report: &Report) -> Vec<Value> {
-    report.json()["rows"].as_array().unwrap().clone()
+    report.findings().unwrap().data["rows"]
+        .as_array()
+        .unwrap()
+        .clone()
 }
 
 /// Checks that the report of a quick plan has the benchmark's name and the machine, and in every row `keys` and the
 /// spread of `times`.
 pub fn assert_is_complete(report: &Report, name: &str, keys: &[&str], times: &[&str]) {
-    let json = report.json();
+    let findings = report.findings().unwrap();
+    let json = &findings.data;
     assert_eq!(json["benchmark"], name);
     assert_eq!(
         (&json["repeats"], &json["quick"]),
@@ -36,7 +40,7 @@ pub fn assert_is_complete(report: &Report, name: &str, keys: &[&str], times: &[&
         assert!(!json["machine"][key].is_null(), "{name}: {key}");
     }
     assert!(json["vectors"]["lanes"].as_u64().unwrap() >= 1);
-    let text = report.text();
+    let text = findings.document.text();
     assert!(text.contains(json["machine"]["cpu"].as_str().unwrap()));
     assert!(text.contains(json["vectors"]["level"].as_str().unwrap()));
     let rows = rows(report);

@@ -22,13 +22,14 @@ pub use map::{Map, Stored};
 pub use measure::{CaseReport, Error, MethodReport, WallReport, measure};
 pub use method::{METHODS, Method, Prepared};
 pub use particles::{Particles, Volumes};
-pub use report::files;
 
 /// A description, in one line.
 pub const ABOUT: &str =
     "density and force of five ways to treat walls, compared with the exact integrals";
 /// The name of the tables in a document.
 pub const TABLES: &str = "wall-integrals";
+/// The name of the files.
+pub const NAME: &str = "walls";
 
 /// h of the paper's experiments (§5.2), meters.
 pub const SUPPORT_RADIUS: f64 = 1.0;

@@ -1,43 +1,35 @@
 //! The results as tables for readers and as rows for programs.
 
-use std::path::{Path, PathBuf};
-
 use super::integrals::Region;
-use sandbox::lab::bench::created;
 use sandbox::lab::error::LabError;
+use sandbox::output::document::{Block, Document, Findings};
 use sandbox::output::table::{Cell, Table};
-use serde_json::{Value, json};
+use serde_json::json;
 
-use super::{CaseReport, Error, METHODS, MethodReport, WallReport};
-
-/// The files that the results are saved to in a folder.
-pub fn files(folder: &Path) -> Vec<PathBuf> {
-    let file = |extension: &str| folder.join(format!("walls.{extension}"));
-    ["md", "csv", "json", "svg", "png"].map(file).into()
-}
+use super::{ABOUT, CaseReport, Error, METHODS, MethodReport, NAME, TABLES, WallReport};
 
 impl WallReport {
-    /// All results as one object.
-    pub fn json(&self) -> Value {
-        json!(self)
-    }
-
-    /// Writes tables, CSV, JSON and the picture into a folder, and returns the paths.
+    /// Everything for readers and programs.
     ///
     /// # Errors
-    /// A file cannot be written.
-    pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>, LabError> {
-        let store = created(folder)?;
-        store.write("walls.md", self.markdown().as_bytes())?;
-        store.write("walls.csv", &self.csv()?)?;
-        store.write("walls.json", format!("{:#}\n", self.json()).as_bytes())?;
-        self.sheet().save(&folder.join("walls"))?;
-        Ok(files(folder))
+    /// A table cannot be written.
+    pub fn findings(&self) -> Result<Findings, LabError> {
+        let about = "The polygons' methods and Akinci's particles are measured against the hidden region, the other \
+                     particles and the maps against the solid; 0 is a rounding error.";
+        let part = Block::Part(TABLES.to_owned(), ABOUT.to_owned());
+        let mut blocks = vec![part, Block::text(about)];
+        for (title, table) in self.tables() {
+            blocks.push(Block::Table(table, title.to_owned()));
+        }
+        blocks.push(Block::figure(NAME, self.sheet(), ""));
+        let document = Document::of("Integrals over walls", blocks);
+        let findings = Findings::new(NAME, document, json!(self));
+        Ok(findings.with_table(NAME, &self.rows())?)
     }
 
     /// Tables with one row per method and one column per case.
-    pub fn markdown(&self) -> String {
-        let parts = [
+    fn tables(&self) -> [(&'static str, Table); 6] {
+        [
             (
                 "Error of the density ∫ W in % of the largest exact value on the path, root mean square (largest):",
                 self.table(|method| Some(in_percent(method.density))),
@@ -65,22 +57,17 @@ impl WallReport {
                 }),
             ),
             ("The hidden and the solid region:", self.regions()),
-        ];
-        let parts = parts.map(|(title, table)| format!("{title}\n\n{}\n", table.markdown()));
-        "The polygons' methods and Akinci's particles are measured against the hidden region, the other particles and \
-         the maps against the solid; 0 is a rounding error.\n\n"
-            .to_owned()
-            + &parts.concat()
+        ]
     }
 
     /// One row for each case and method; errors are relative to the largest exact value.
-    pub fn csv(&self) -> Result<Vec<u8>, LabError> {
+    fn rows(&self) -> Table {
         let cases = self.cases.iter();
         let rows = cases.flat_map(|case| case.methods.iter().map(move |method| (case, method)));
         let rows: Vec<(&CaseReport, &MethodReport)> = rows.collect();
         let parts = ["_rms", "_max"];
         let error = |error: Error| Cell::Spread(error.rms, Some(error.max));
-        let table = Table::of(&rows)
+        Table::of(&rows)
             .column("case", |row| row.0.name)
             .column("method", |row| row.1.name.as_str())
             .column("against", |row| match row.1.region {
@@ -95,8 +82,7 @@ impl WallReport {
             .column("ns_maximum", |row| row.1.ns.maximum)
             .column("preparation_ms", |row| row.1.preparation_ms)
             .column("bytes", |row| row.1.bytes)
-            .table();
-        Ok(table.csv()?)
+            .table()
     }
 
     /// A table with a column for each case that has a value.

@@ -82,7 +82,7 @@ fn the_main_crowd_comes_first_and_no_crowd_is_larger_than_asked_for() {
 #[test]
 fn a_missing_engine_is_named_with_how_to_install_it() {
     let report = measure(&quick(), Path::new(MISSING));
-    let text = report.text();
+    let text = report.findings().unwrap().document.text();
     for words in [
         "JuPedSim is missing",
         "RVO2 is missing",
@@ -167,7 +167,8 @@ fn a_crowd_that_would_take_too_long_is_left_out_with_the_reason() {
     let report = measure(&quick(), &python);
     let reason =
         "RVO2 (pyrvo 9.9), ORCA, all neighbors: no crowd of 400, as a step would take 12 s";
-    assert!(report.text().contains(reason), "{}", report.text());
+    let text = report.findings().unwrap().document.text();
+    assert!(text.contains(reason), "{text}");
     for row in rows(&report) {
         let fake = row["engine"].as_str().unwrap().contains("9.9");
         // The anticipation velocity model takes part only with the main crowd, so that nothing is known before.

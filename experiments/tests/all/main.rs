@@ -2,6 +2,7 @@
 
 mod compare;
 mod domains;
+mod physics;
 #[path = "../../../tests/common/reports.rs"]
 mod reports;
 mod walls;

@@ -252,7 +252,9 @@ fn the_report_has_every_method_on_every_path() {
     let report = measure(true);
     let paths = cases(2).len();
     assert_eq!(report.cases.len(), paths);
-    let csv = String::from_utf8(report.csv().unwrap()).unwrap();
+    let findings = report.findings().unwrap();
+    let csv = String::from_utf8(findings.tables[0].1.clone()).unwrap();
+    let text = findings.document.text();
     assert_eq!(csv.lines().count(), 1 + paths * METHODS.len());
     for case in &report.cases {
         assert!(case.quadrature < 1e-9);
@@ -260,7 +262,7 @@ fn the_report_has_every_method_on_every_path() {
             assert!(method.density.rms <= method.density.max && method.density.max.is_finite());
             assert!(method.force.rms <= method.force.max && method.force.max.is_finite());
             assert!(method.ns.minimum > 0.0 && method.preparation_ms >= 0.0);
-            assert!(report.markdown().contains(&method.name));
+            assert!(text.contains(&method.name));
         }
         for method in &case.methods[1..3] {
             assert!(

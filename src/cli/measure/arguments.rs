@@ -6,6 +6,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use crate::cli::arguments::{PrintOptions, ProgramOptions};
+use crate::cli::documents::DocumentOptions;
 use crate::cli::values::{
     CutOff, cut_off, frame_rate, length, line, moment, passages, positive_seconds, region, segments,
 };
@@ -83,6 +84,8 @@ pub struct MeasureOptions {
     /// Folder for the results [default: the file's name with -measured appended]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub files: DocumentOptions,
     #[command(flatten)]
     pub print: PrintOptions,
     #[command(flatten)]

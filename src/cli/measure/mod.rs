@@ -7,16 +7,15 @@ pub use arguments::MeasureOptions;
 use std::path::Path;
 
 use super::arguments::use_threads;
+use super::documents::add_folder;
 use super::failure::Failure;
 use super::inputs::{in_order, site, tracks};
-use super::terminal::{talk, tell};
+use super::terminal::talk;
 use super::watch::bar;
 use engine::boundary::WallMethod;
-use lab::error::LabError;
-use lab::gallery;
 use lab::measure::{
     Behind, CellLimit, Kernel, MOST_HIDDEN, Measured, MomentRecorder, Options, Report, Results,
-    check, files, measure, pictures, speed,
+    STREAMED, check, measure, names, speed,
 };
 use output::recording::check_enabled;
 use runs::outputs::{Manner, Outputs};
@@ -70,17 +69,18 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     });
     drop(progress);
     let measured = measured?;
-    results.finish(&measured, &tracks)?;
+    results.finish()?;
     recording.finish()?;
-    gallery::save(&folder, pictures::sheets(&measured, &site)).map_err(LabError::from)?;
     report_oddities(&measured);
     let report = Report {
         tracks: &tracks,
         options: &what,
         measured: &measured,
     };
-    talk(&format!("note: results are in {}", folder.display()));
-    tell(options.program.json, || report.json(), || report.text())
+    let found = report.findings(&site)?;
+    options
+        .files
+        .give(&found, options.program.json, Some(&folder))
 }
 
 /// Rejects results that cannot be written or would replace an input.
@@ -91,9 +91,11 @@ fn check_outputs(options: &MeasureOptions, folder: &Path) -> Result<(), Failure>
         outputs.reads("--geometry", plan);
     }
     outputs.writes("--out", folder, Manner::Folder);
-    for name in files() {
+    for name in STREAMED {
         outputs.writes("--out", &folder.join(name), Manner::Beside);
     }
+    add_folder(&mut outputs, folder, &names());
+    options.files.add_to(&mut outputs, &names());
     Ok(outputs.check()?)
 }
 

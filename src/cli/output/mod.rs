@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use super::arguments::{OutputOptions, RecordOptions, TrajectoryOptions};
 use super::failure::Failure;
 use super::interrupt::Interrupt;
+use super::reported::names;
 use super::results;
 use super::terminal::talk;
 use super::values::{ids, is_page, region};
@@ -68,6 +69,7 @@ pub fn check(
     if let Some(path) = &options.checkpoint.checkpoint {
         outputs.writes("--checkpoint", path, Manner::Whole);
     }
+    options.files.add_to(&mut outputs, &names(scenario));
     Ok(outputs.check()?)
 }
 

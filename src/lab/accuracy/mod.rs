@@ -21,7 +21,7 @@ mod trials;
 pub use found::{Found, Measured, Point, Quantity};
 pub use front::{better, cheapest};
 pub use lyapunov::Lyapunov;
-pub use report::{CHOICES, Report};
+pub use report::{CHOICES, Report, file_names};
 pub use scenes::{Kind, SCENES, Scene};
 pub use suite::{Plan, accuracy};
 pub use trajectory::{Errors, Motion, SAMPLES, Trajectories, limit};

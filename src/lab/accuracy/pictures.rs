@@ -11,8 +11,8 @@ const MOTION: [usize; 6] = [0, 1, 2, 4, 7, 9];
 /// The ends of the axes, relative to the smallest and the largest value.
 const ENDS: [f64; 2] = [0.6, 1.6];
 
-/// `accuracy-SCENE`: a panel for each quantity.
-pub fn sheet(found: &Found) -> (String, Sheet) {
+/// A panel for each quantity.
+pub fn sheet(found: &Found) -> Sheet {
     let costs = positive(found.points.iter().map(|point| point.cost.median), ENDS);
     let quantities = match found.scene.kind {
         Kind::Motion => MOTION.to_vec(),
@@ -22,8 +22,7 @@ pub fn sheet(found: &Found) -> (String, Sheet) {
     let panels = quantities.into_iter().map(|k| panel(found, k, costs));
     let panels = with_legend(panels.collect(), columns);
     let title = format!("{}: {}", found.scene.name, found.scene.about());
-    let sheet = Sheet::new(&title, columns, [225.0, 195.0], panels);
-    (format!("accuracy-{}", found.scene.name), sheet)
+    Sheet::new(&title, columns, [225.0, 195.0], panels)
 }
 
 fn panel(found: &Found, quantity: usize, costs: [f64; 2]) -> Panel {

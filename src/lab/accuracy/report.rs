@@ -1,13 +1,32 @@
 //! The report of `sandbox accuracy`.
 
+use serde_json::{Value, json};
+
 use super::found::{self, Found};
+use super::pictures;
 use super::scenes::names;
 use crate::error::LabError;
+use output::document::{Block, Document, Findings, Names};
 use output::table::Table;
-use runs::store::Store;
 
 /// The name of the table of the best choices of all scenes.
 pub const CHOICES: &str = "choices";
+/// The name of the files.
+const NAME: &str = "accuracy";
+
+/// The names of the files with results of these scenes.
+pub fn file_names<'a>(scenes: impl Iterator<Item = &'a str>) -> Names {
+    Names {
+        name: NAME.to_owned(),
+        tables: vec![NAME.to_owned()],
+        figures: scenes.map(figure).collect(),
+    }
+}
+
+/// The name of a scene's figure.
+fn figure(scene: &str) -> String {
+    format!("{NAME}-{scene}")
+}
 
 /// All results.
 #[derive(Clone)]
@@ -19,49 +38,31 @@ pub struct Report {
 }
 
 impl Report {
-    /// A table of the cheapest settings for each error.
-    fn choices(&self) -> Table {
-        let choices: Vec<_> = self.scenes.iter().flat_map(Found::choices).collect();
-        found::table(&choices)
-    }
-
-    /// The cheapest settings for each error, then all points, as Markdown: (name, text).
-    pub fn parts(&self) -> Vec<(String, String)> {
-        let choices = [(CHOICES.to_owned(), self.choices().markdown())].into_iter();
-        let scenes = self.scenes.iter().map(|found| {
-            let text = format!("{}\n\n{}", found.notes, found.table().markdown());
-            (found.scene.name.to_owned(), text)
-        });
-        choices.chain(scenes).collect()
-    }
-
-    /// The text for a terminal.
-    pub fn text(&self) -> String {
-        let scenes = self.scenes.iter().map(|found| {
-            let (name, about, table) = (found.scene.name, found.scene.about(), found.table());
-            format!("{name}: {about}\n{}\n\n{}\n", found.notes, table.text())
-        });
-        scenes.chain([self.choices().text()]).collect()
-    }
-
-    /// Writes tables, CSV and JSON into the store's folder.
+    /// Everything for readers and programs.
     ///
     /// # Errors
-    /// A file cannot be written.
-    pub fn write(&self, store: &Store) -> Result<(), LabError> {
-        let parts = self.parts().into_iter();
-        let text: String = parts
-            .map(|(name, text)| format!("## {name}\n\n{text}\n"))
-            .collect();
-        store.write("accuracy.md", text.as_bytes())?;
-        store.write("accuracy.csv", &self.csv()?)?;
-        let json = format!("{}\n", self.json());
-        store.write("accuracy.json", json.as_bytes())?;
-        Ok(())
+    /// A table cannot be written.
+    pub fn findings(&self) -> Result<Findings, LabError> {
+        let choices: Vec<_> = self.scenes.iter().flat_map(Found::choices).collect();
+        let part = |name: &str, heading: String| Block::Part(name.to_owned(), heading);
+        let mut blocks = vec![
+            part(CHOICES, "The cheapest settings for each error".to_owned()),
+            Block::table(found::table(&choices)),
+        ];
+        for found in &self.scenes {
+            let (name, about) = (found.scene.name, found.scene.about());
+            blocks.push(part(name, format!("{name}: {about}")));
+            blocks.push(Block::text(&found.notes));
+            blocks.push(Block::table(found.table()));
+            blocks.push(Block::figure(&figure(name), pictures::sheet(found), about));
+        }
+        let document = Document::of("Run time against error", blocks);
+        let findings = Findings::new(NAME, document, self.json());
+        Ok(findings.with_table(NAME, &self.errors())?)
     }
 
     /// One row for each error of each point.
-    fn csv(&self) -> Result<Vec<u8>, LabError> {
+    fn errors(&self) -> Table {
         let mut rows = Vec::new();
         for found in &self.scenes {
             for point in &found.points {
@@ -70,7 +71,7 @@ impl Report {
                 rows.extend(errors.map(|(quantity, error)| (found, point, quantity, error)));
             }
         }
-        let table = Table::of(&rows)
+        Table::of(&rows)
             .column("scene", |(found, ..)| found.scene.name)
             .column("knob", |(_, point, ..)| point.trial.knob.as_str())
             .column("curve", |(_, point, ..)| point.trial.curve.as_str())
@@ -87,14 +88,13 @@ impl Report {
             })
             .column("error", |(.., error)| error.error)
             .column("error_interval", |(.., error)| error.interval)
-            .table();
-        Ok(table.csv()?)
+            .table()
     }
 
     /// All results as one object.
-    pub fn json(&self) -> serde_json::Value {
+    fn json(&self) -> Value {
         let scenes = self.scenes.iter().map(|found| {
-            serde_json::json!({
+            json!({
                 "scene": found.scene.name,
                 "about": found.scene.about(),
                 "notes": found.notes,
@@ -102,6 +102,6 @@ impl Report {
                 "points": found.points,
             })
         });
-        serde_json::json!({ "quick": self.quick, "scenes": scenes.collect::<Vec<_>>() })
+        json!({ "quick": self.quick, "scenes": scenes.collect::<Vec<_>>() })
     }
 }

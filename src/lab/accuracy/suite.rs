@@ -9,9 +9,8 @@ use super::report::Report;
 use super::scenes::{Kind, Scene, names};
 use super::trajectory::Trajectories;
 use super::trials::{Trial, few, reference, settings, trials};
-use super::{cost, pictures, statistics};
+use super::{cost, statistics};
 use crate::error::LabError;
-use crate::gallery;
 use crate::jobs::{read, results};
 use crate::sweep::{Cell, Study};
 use analysis::statistics::Range;
@@ -68,13 +67,10 @@ pub fn accuracy(plan: &Plan, store: &Store, listener: &dyn Listener) -> Result<R
         task.finish(&own, listener)
     });
     let found = found.collect::<Result<Vec<Found>, _>>()?;
-    let report = Report {
+    Ok(Report {
         scenes: found,
         quick: plan.quick,
-    };
-    report.write(store)?;
-    gallery::save(store.folder(), report.scenes.iter().map(pictures::sheet))?;
-    Ok(report)
+    })
 }
 
 impl Task {

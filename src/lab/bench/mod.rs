@@ -18,7 +18,7 @@ pub mod timing;
 
 pub use crowd::Crowd;
 pub use plan::{Benchmark, Measure, Plan};
-pub use report::{Findings, Report, created, files};
+pub use report::{Report, Timings, names};
 pub use skips::{SKIPS, Skip, everything};
 pub use stages::{Started, Stretch, begin};
 

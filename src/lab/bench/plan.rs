@@ -1,6 +1,6 @@
 //! Benchmarks, and the amount of their work.
 
-use super::report::{Findings, Report};
+use super::report::{Report, Timings};
 use crate::error::LabError;
 
 /// The amount of work of a measurement.
@@ -28,7 +28,7 @@ impl Plan {
 }
 
 /// Runs a benchmark, and reports its progress.
-pub type Measure = fn(&Plan, &dyn Fn(&str)) -> Result<Findings, LabError>;
+pub type Measure = fn(&Plan, &dyn Fn(&str)) -> Result<Timings, LabError>;
 
 /// A benchmark.
 pub struct Benchmark {

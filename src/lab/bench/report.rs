@@ -1,7 +1,4 @@
-//! The results of a benchmark: as text, as JSON, as files.
-
-use std::fs;
-use std::path::{Path, PathBuf};
+//! The results of a benchmark.
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -10,13 +7,13 @@ use super::plan::Plan;
 use crate::error::LabError;
 use crate::machine::Machine;
 use engine::pairs::Vectors;
+use output::document::{Block, Document, Findings, Names};
 use output::plot::Sheet;
 use output::table::Table;
-use runs::store::Store;
 
 /// The results of a benchmark.
 #[derive(Debug, Clone, Serialize)]
-pub struct Findings {
+pub struct Timings {
     /// The table for readers.
     #[serde(skip)]
     pub table: Table,
@@ -42,17 +39,12 @@ pub struct Report {
     repeats: usize,
     quick: bool,
     #[serde(flatten)]
-    findings: Findings,
+    times: Timings,
 }
 
 impl Report {
-    /// The findings of a benchmark, with this machine and the plan.
-    pub fn of(
-        benchmark: &'static str,
-        about: &'static str,
-        plan: &Plan,
-        findings: Findings,
-    ) -> Self {
+    /// The results of a benchmark, with this machine and the plan.
+    pub fn of(benchmark: &'static str, about: &'static str, plan: &Plan, times: Timings) -> Self {
         Self {
             benchmark,
             about,
@@ -61,59 +53,31 @@ impl Report {
             threads: rayon::current_num_threads(),
             repeats: plan.repeats,
             quick: plan.quick,
-            findings,
+            times,
         }
     }
 
-    /// The text for a terminal.
-    pub fn text(&self) -> String {
-        let quick = ["", "; quick: these times are meaningless"][usize::from(self.quick)];
-        let mut text = format!(
-            "{}: {}\n{}\n{}, {} thread(s), {} repeat(s){quick}\n\n{}",
-            self.benchmark,
-            self.about,
-            self.machine,
-            self.vectors,
-            self.threads,
-            self.repeats,
-            self.findings.table.text()
-        );
-        for note in &self.findings.notes {
-            text += &format!("\n{note}\n");
-        }
-        text
-    }
-
-    /// The JSON for programs.
-    pub fn json(&self) -> Value {
-        json!(self)
-    }
-
-    /// Writes the JSON, and the picture as SVG and PNG, and returns the paths.
+    /// Everything for readers and programs.
     ///
     /// # Errors
-    /// A file cannot be written.
-    pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>, LabError> {
-        let json = format!("{:#}\n", self.json());
-        created(folder)?.write(&format!("{}.json", self.benchmark), json.as_bytes())?;
-        self.findings.sheet.save(&folder.join(self.benchmark))?;
-        Ok(files(self.benchmark, folder))
+    /// A table cannot be written.
+    pub fn findings(&self) -> Result<Findings, LabError> {
+        let quick = ["", "; quick: these times are meaningless"][usize::from(self.quick)];
+        let how = format!(
+            "{}: {}\n{}\n{}, {} thread(s), {} repeat(s){quick}",
+            self.benchmark, self.about, self.machine, self.vectors, self.threads, self.repeats,
+        );
+        let mut blocks = vec![Block::Text(how), Block::table(self.times.table.clone())];
+        blocks.extend(self.times.notes.iter().map(Block::text));
+        let sheet = self.times.sheet.clone();
+        blocks.push(Block::figure(self.benchmark, sheet, ""));
+        let document = Document::of(format!("Benchmark {}", self.benchmark), blocks);
+        let findings = Findings::new(self.benchmark, document, json!(self));
+        Ok(findings.with_table(self.benchmark, &self.times.table)?)
     }
 }
 
-/// A folder for files, created if it does not exist.
-///
-/// # Errors
-/// It cannot be created.
-pub fn created(folder: &Path) -> Result<Store, LabError> {
-    let shown = folder.display();
-    let unwritable = |error| LabError::Data(format!("cannot write {shown}: {error}"));
-    fs::create_dir_all(folder).map_err(unwritable)?;
-    Ok(Store::at(folder))
-}
-
-/// The files that a benchmark writes into a folder.
-pub fn files(name: &str, folder: &Path) -> Vec<PathBuf> {
-    let file = |extension: &str| folder.join(format!("{name}.{extension}"));
-    ["json", "svg", "png"].map(file).into()
+/// The names of the files of a benchmark.
+pub fn names(benchmark: &str) -> Names {
+    Names::new(benchmark, &[benchmark], &[benchmark])
 }

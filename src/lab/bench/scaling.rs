@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::crowd::Crowd;
 use super::plan::{Benchmark, Plan};
-use super::report::Findings;
+use super::report::Timings;
 use super::timing::{failed, ms_of, ms_per_frame};
 use crate::error::LabError;
 use crate::gallery::{around, color, medians, single};
@@ -107,7 +107,7 @@ struct Size {
     peak_bytes_per_agent: Option<f64>,
 }
 
-fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
+fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Timings, LabError> {
     let before = Resident::read();
     let largest = plan.choose(plan.largest, plan.largest.min(REFERENCE));
     let mut rows: Vec<Size> = Vec::new();
@@ -138,7 +138,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     let unknown =
         "The memory of a process is read from /proc/self/status, which this system does not have.";
     let memory = if before.is_some() { memory } else { unknown };
-    Ok(Findings {
+    Ok(Timings {
         table: table(&rows),
         sheet: picture(&rows),
         rows: json!(rows),

@@ -11,7 +11,7 @@ use serde_json::json;
 
 use self::work::{Course, Work};
 use super::plan::{Benchmark, Plan};
-use super::report::Findings;
+use super::report::Timings;
 use super::stages::{Started, begin, busiest};
 use crate::error::LabError;
 use crate::gallery::{color, key, single};
@@ -158,7 +158,7 @@ struct Saving {
     nothing_to_skip: Option<&'static str>,
 }
 
-fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
+fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Timings, LabError> {
     let mut rows = Vec::new();
     for stretch in busiest(plan) {
         // Small scenes have social forces alone, too, which read no density.
@@ -175,7 +175,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         }
     }
     let skips = SKIPS.map(|skip| format!("{}: {}", skip.name, skip.about));
-    Ok(Findings {
+    Ok(Timings {
         table: table(&rows),
         sheet: picture(&rows),
         rows: json!(rows),

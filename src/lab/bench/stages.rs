@@ -11,7 +11,7 @@ use super::crowd::Crowd;
 use super::hall;
 use super::office;
 use super::plan::{Benchmark, Plan};
-use super::report::Findings;
+use super::report::Timings;
 use super::timing::{failed, ms_of, ms_per_frame, warmed};
 use crate::error::LabError;
 use crate::gallery::{color, key, single};
@@ -127,7 +127,7 @@ struct Divided {
     measurements_ms: Range,
 }
 
-fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
+fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Timings, LabError> {
     let mut rows = Vec::new();
     for stretch in busiest(plan) {
         say(stretch.0);
@@ -193,7 +193,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     let sway = plan.choose((SWAY.1, SWAY.2), QUICK_STRETCH);
     let until = |frames: u64| PAPER_TIME_STEP * (before + frames) as f64;
     let from = until(0);
-    Ok(Findings {
+    Ok(Timings {
         table: table(&rows),
         sheet: picture(&rows),
         rows: json!(rows),

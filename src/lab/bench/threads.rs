@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::crowd::Crowd;
 use super::plan::{Benchmark, Plan};
-use super::report::Findings;
+use super::report::Timings;
 use super::timing::{alternate, going_on};
 use crate::error::LabError;
 use crate::gallery::{color, medians, single};
@@ -49,14 +49,14 @@ fn counts(all: usize) -> Vec<usize> {
     counts
 }
 
-fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
+fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Timings, LabError> {
     let counts = counts(Machine::here().hardware_threads);
     let mut rows = Vec::new();
     for &agents in plan.choose(&SIZES[..], &SIZES[..1]) {
         say(&format!("{agents} agents"));
         rows.append(&mut measure(agents, &counts, plan)?);
     }
-    Ok(Findings {
+    Ok(Timings {
         table: table(&rows),
         sheet: picture(&rows, &counts),
         rows: json!(rows),

@@ -22,18 +22,18 @@ mod text;
 
 pub use evaluate::{Evaluated, Sample};
 pub use parameter::Parameter;
-pub use report::{FILES, Report};
+pub use report::Report;
 pub use scene::{Scene, Set, Target};
 pub use search::{Found, Stage};
 pub use study::{Calibration, MOST_GENERATIONS};
+pub use text::names;
 
 use crate::error::LabError;
-use crate::gallery;
 use crate::sweep::Shard;
 use runs::job::Listener;
 use runs::store::Store;
 
-/// Computes all stages and writes the results into the store's folder. `shard` is the part of each stage's cells that
+/// Computes all stages. `shard` is the part of each stage's cells that
 /// this process computes first; then it computes those that no other process has claimed, and waits for the others.
 ///
 /// # Errors
@@ -50,9 +50,5 @@ pub fn run<'a>(
         store,
         listener,
     })?;
-    let report = Report { calibration, found };
-    report.write(store)?;
-    listener.notes("drawing 3 pictures");
-    gallery::save(store.folder(), pictures::sheets(&report))?;
-    Ok(report)
+    Ok(Report { calibration, found })
 }

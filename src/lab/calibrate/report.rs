@@ -8,27 +8,12 @@ use super::residual::{noise, residual, root_mean_square};
 use super::scene::{Set, Target};
 use super::search::{Found, Stage, Trial};
 use super::study::Calibration;
-use crate::error::LabError;
 use runs::identity::ENGINE;
-use runs::store::Store;
 
 /// A parameter is not identified if its interval covers more than this fraction of its bounds.
 const MOST: f64 = 0.5;
 /// A parameter is at a bound if it is closer to it than this fraction of the bounds.
 const NEAR: f64 = 0.02;
-
-/// The files that `write` and the pictures write.
-pub const FILES: [&str; 9] = [
-    "result.json",
-    "result.md",
-    "evaluations.csv",
-    "convergence.svg",
-    "convergence.png",
-    "errors.svg",
-    "errors.png",
-    "screening.svg",
-    "screening.png",
-];
 
 /// A calibration with its results.
 pub struct Report<'a> {
@@ -259,13 +244,5 @@ impl Report<'_> {
             keys.map(move |key| (key.clone(), value.clone()))
         });
         Value::Object(keys.collect::<Map<_, _>>())
-    }
-
-    /// Writes the results as JSON, Markdown and CSV into the store's folder.
-    pub(super) fn write(&self, store: &Store) -> Result<(), LabError> {
-        store.write("result.json", format!("{:#}\n", self.json()).as_bytes())?;
-        store.write("result.md", self.markdown().as_bytes())?;
-        store.write("evaluations.csv", &self.csv()?)?;
-        Ok(())
     }
 }

@@ -1,11 +1,26 @@
-//! The results of a calibration as Markdown, and its points as CSV.
+//! The results of a calibration for readers and programs.
 
+use super::pictures;
 use super::report::{Errors, ParameterResult, Report, ValueResult};
 use super::residual::residual;
 use super::scene::Set;
 use super::search::Stage;
 use crate::error::LabError;
+use output::document::{Block, Document, Findings, Names};
 use output::table::Table;
+
+/// The name of the files with all results, and of the table of all points.
+const NAME: &str = "result";
+const EVALUATIONS: &str = "evaluations";
+
+/// The names of all files with results.
+pub fn names() -> Names {
+    Names::new(
+        NAME,
+        &[EVALUATIONS],
+        &["convergence", "errors", "screening"],
+    )
+}
 
 /// Correlations above this are named in the text.
 const CORRELATED: f64 = 0.7;
@@ -25,37 +40,57 @@ impl Errors {
 }
 
 impl Report<'_> {
-    /// The results as Markdown.
-    pub fn markdown(&self) -> String {
-        let of = self.calibration;
+    /// Everything for readers and programs.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn findings(&self) -> Result<Findings, LabError> {
         let values = self.values();
-        let mut text = format!("# {}\n\n", of.name);
-        for of in self.sets() {
-            text += &format!(
-                "- {}: {:.2} tolerances (root mean square; {:.2} at the start), {} of {} values within the tolerance\n",
+        let sets = self.sets().into_iter().map(|of| {
+            format!(
+                "{}: {:.2} tolerances (root mean square; {:.2} at the start), {} of {} values within the tolerance",
                 of.set.name(),
                 of.best,
                 of.start,
                 of.within,
                 of.values
-            );
-        }
-        let [search, points, failures] = self.counts();
-        let generations = self.found.generations.len();
-        text += &format!(
-            "\n{points} points, {search} of them in {generations} generations, with {} seed(s); errors with {} \
-             seed(s). {failures} time(s) a run gave no value.\n\n{}",
-            of.seeds.len(),
-            of.final_seeds.len(),
-            self.parameter_table(),
-        );
+            )
+        });
+        let mut blocks = vec![
+            Block::List(sets.collect()),
+            Block::text(self.effort()),
+            Block::table(self.parameter_table()),
+        ];
         for (pair, value) in self.correlated() {
-            text += &format!("\nCorrelated: {pair} ({value:+.2}).\n");
+            blocks.push(Block::Text(format!("Correlated: {pair} ({value:+.2}).")));
         }
-        text + "\n" + &value_table(&values) + &failed(&values)
+        blocks.push(Block::table(value_table(&values)));
+        let failed = failed(&values);
+        if !failed.is_empty() {
+            blocks.push(Block::text("Failed runs at the best point:"));
+            blocks.push(Block::List(failed));
+        }
+        let figures = pictures::sheets(self).into_iter();
+        blocks.extend(figures.map(|(name, sheet)| Block::figure(name, sheet, "")));
+        let document = Document::of(&self.calibration.name, blocks);
+        let findings = Findings::new(NAME, document, self.json());
+        Ok(findings.with_table(EVALUATIONS, &self.evaluations())?)
     }
 
-    fn parameter_table(&self) -> String {
+    /// How many points were computed.
+    fn effort(&self) -> String {
+        let of = self.calibration;
+        let [search, points, failures] = self.counts();
+        let generations = self.found.generations.len();
+        format!(
+            "{points} points, {search} of them in {generations} generations, with {} seed(s); errors with {} seed(s). \
+             {failures} time(s) a run gave no value.",
+            of.seeds.len(),
+            of.final_seeds.len(),
+        )
+    }
+
+    fn parameter_table(&self) -> Table {
         let rows = self.parameters();
         let digits = |value: f64| format!("{:.3e}", value).parse().unwrap_or(value);
         let range = |[low, high]: [f64; 2]| format!("{} to {}", digits(low), digits(high));
@@ -78,7 +113,7 @@ impl Report<'_> {
                 row.covers.map(|part| format!("{:.0} %", 100.0 * part))
             })
             .column("", verdict);
-        table.table().markdown()
+        table.table()
     }
 
     /// The searched parameters with correlated errors.
@@ -95,8 +130,8 @@ impl Report<'_> {
             .collect()
     }
 
-    /// All points as CSV: parameters, misfit and the residuals of the fit.
-    pub(super) fn csv(&self) -> Result<Vec<u8>, LabError> {
+    /// All points: parameters, misfit and the residuals of the fit.
+    fn evaluations(&self) -> Table {
         let of = self.calibration;
         let mut columns = Table::of(&self.found.trials)
             .column("stage", |trial| trial.stage.name())
@@ -118,11 +153,11 @@ impl Report<'_> {
                 residual(&trial.evaluated.samples[k], target, &of.rule)
             });
         }
-        Ok(columns.table().csv()?)
+        columns.table()
     }
 }
 
-fn value_table(values: &[ValueResult]) -> String {
+fn value_table(values: &[ValueResult]) -> Table {
     let table = Table::of(values)
         .column("", |value| value.set.name())
         .column("scene", |value| value.of.as_str())
@@ -138,19 +173,16 @@ fn value_table(values: &[ValueResult]) -> String {
         .column("best", |value| value.best.written())
         .fixed("tolerances", 1, |value| value.best.residual)
         .fixed("seeds' noise", 1, |value| value.best.noise);
-    table.table().markdown()
+    table.table()
 }
 
 /// The reasons of failed runs at the best point.
-fn failed(values: &[ValueResult]) -> String {
+fn failed(values: &[ValueResult]) -> Vec<String> {
     let lines = values.iter().flat_map(|value| {
         let reasons = value.best.failures.iter();
-        reasons.map(move |why| format!("- {}: {why}\n", value.of))
+        reasons.map(move |why| format!("{}: {why}", value.of))
     });
     let mut lines: Vec<String> = lines.collect();
     lines.dedup();
-    match lines.is_empty() {
-        true => String::new(),
-        false => format!("\nFailed runs at the best point:\n\n{}", lines.concat()),
-    }
+    lines
 }

@@ -6,10 +6,20 @@ mod tracks;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
+use crate::error::LabError;
+use output::document::{Block, Document, Findings, Names};
 use output::table::Table;
 
 pub use reports::{NotAReport, of_reports};
 pub use tracks::of_tracks;
+
+/// The name of the files.
+const NAME: &str = "comparison";
+
+/// The names of the files with a comparison.
+pub fn names() -> Names {
+    Names::new(NAME, &[NAME], &[])
+}
 
 /// The most differences of a kind that are printed.
 const MOST: usize = 40;
@@ -63,8 +73,46 @@ impl Differences {
         self.equal += equal;
     }
 
+    /// Everything for readers and programs. The table for programs has all differences.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn findings(&self) -> Result<Findings, LabError> {
+        let mut blocks = Vec::new();
+        if !self.settings.is_empty() {
+            let table = Table::of(shown(&self.settings))
+                .column("setting", |one| one.name.as_str())
+                .column("A", |one| brief(&one.a))
+                .column("B", |one| brief(&one.b));
+            blocks.push(Block::table(table.table()));
+            blocks.push(Block::Text(more(&self.settings)));
+        }
+        if !self.results.is_empty() {
+            let table = Table::of(shown(&self.results))
+                .column("result", |one| one.name.as_str())
+                .column("A", |one| brief(&one.a))
+                .column("B", |one| brief(&one.b))
+                .column("B − A", |one| one.change().map(rounded))
+                .fixed("%", 1, Difference::percent);
+            blocks.push(Block::table(table.table()));
+            blocks.push(Block::Text(more(&self.results)));
+        }
+        let (differ, equal) = (self.results.len(), self.equal);
+        let counts = format!("{differ} result(s) differ, {equal} are equal");
+        blocks.push(Block::Text(format!("{counts}\n{}", self.about)));
+        let document = Document::of("Comparison of two results", blocks);
+        let all: Vec<&Difference> = self.settings.iter().chain(&self.results).collect();
+        let table = Table::of(&all)
+            .column("name", |one| one.name.as_str())
+            .column("a", |one| whole(&one.a))
+            .column("b", |one| whole(&one.b))
+            .column("change", |one| one.change())
+            .column("percent", |one| one.percent());
+        Ok(Findings::new(NAME, document, self.json()).with_table(NAME, &table.table())?)
+    }
+
     /// As one JSON object; its numbers have the change, too.
-    pub fn json(&self) -> Value {
+    fn json(&self) -> Value {
         let entry = |one: &Difference| {
             let mut entry = json!(one);
             entry["change"] = json!(one.change());
@@ -77,36 +125,6 @@ impl Differences {
             "equal_results": self.equal,
             "about": self.about,
         })
-    }
-
-    /// As tables for a terminal.
-    pub fn text(&self) -> String {
-        let mut text = match self.settings.as_slice() {
-            [] => String::new(),
-            settings => {
-                let table = Table::of(shown(settings))
-                    .column("setting", |one| one.name.as_str())
-                    .column("A", |one| brief(&one.a))
-                    .column("B", |one| brief(&one.b));
-                table.table().text() + &more(settings) + "\n"
-            }
-        };
-        if !self.results.is_empty() {
-            let table = Table::of(shown(&self.results))
-                .column("result", |one| one.name.as_str())
-                .column("A", |one| brief(&one.a))
-                .column("B", |one| brief(&one.b))
-                .column("B − A", |one| one.change().map(rounded))
-                .fixed("%", 1, Difference::percent);
-            text += &(table.table().text() + &more(&self.results));
-        }
-        let differ = self.results.len();
-        let about = match self.about.as_str() {
-            "" => String::new(),
-            about => format!("{about}\n"),
-        };
-        let equal = self.equal;
-        text + &format!("{differ} result(s) differ, {equal} are equal\n{about}")
     }
 }
 
@@ -177,7 +195,16 @@ fn shown(all: &[Difference]) -> &[Difference] {
 fn more(all: &[Difference]) -> String {
     match all.len().saturating_sub(MOST) {
         0 => String::new(),
-        more => format!("… and {more} more; --json lists them all\n"),
+        more => format!("… and {more} more; --json lists them all"),
+    }
+}
+
+/// A value for programs.
+fn whole(value: &Value) -> Option<String> {
+    match value {
+        Value::Null => None,
+        Value::String(text) => Some(text.clone()),
+        other => Some(other.to_string()),
     }
 }
 

@@ -5,8 +5,10 @@ use serde_json::{Value, json};
 
 use super::prior::Prior;
 use super::series::{Reached, Series};
+use crate::differences::names;
 use crate::error::LabError;
 use crate::jobs::read;
+use output::document::{Block, Document, Findings};
 use output::table::{Table, as_precise};
 
 /// What is read of an answer.
@@ -179,13 +181,11 @@ fn paired(a: &Row, b: &Row, confidence: f64) -> Option<Reached> {
 }
 
 impl Compared {
-    /// As one JSON object.
-    pub fn json(&self) -> Value {
-        json!({ "compared": self })
-    }
-
-    /// As a table for a terminal.
-    pub fn text(&self) -> String {
+    /// Everything for readers and programs.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn findings(&self) -> Result<Findings, LabError> {
         let verdict = |one: &Change| match (one.is_clear, one.times_runs) {
             (true, _) => "differ".to_owned(),
             (false, Some(times)) if times < 1e3 => {
@@ -210,10 +210,18 @@ impl Compared {
             names => format!("Only one of them has {}.\n", names.join(", ")),
         };
         let [a, b] = &self.titles;
-        format!(
-            "A: {a}\nB: {b}\n\n{}{missing}± is the {} % interval of the difference, from chance and time steps.\n",
-            table.text(),
+        let interval = format!(
+            "± is the {} % interval of the difference, from chance and time steps.",
             100.0 * self.confidence
-        )
+        );
+        let blocks = vec![
+            Block::Text(format!("A: {a}\nB: {b}")),
+            Block::table(table.clone()),
+            Block::Text(missing + &interval),
+        ];
+        let document = Document::of("Comparison of two estimates", blocks);
+        let name = names().name;
+        let findings = Findings::new(&name, document, json!({ "compared": self }));
+        Ok(findings.with_table(&name, &table)?)
     }
 }

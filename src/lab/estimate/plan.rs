@@ -17,7 +17,7 @@ const FEW: usize = 6;
 /// The most runs that are tried to find the first step.
 const MOST_TRIED: usize = 1000;
 /// Predictions without a limit end at this number of runs.
-pub(super) const MOST_PREDICTED: usize = 100_000;
+pub const MOST_PREDICTED: usize = 100_000;
 
 /// A step on offer.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! What is known about a result before its first run, from results that were measured before.
 //!
 //! Two things are known: the spread of runs, and the error of the paper's step in units of this spread. The sources
-//! are the results that ship with the program (`knowledge.json`, which `sandbox accuracy knowledge` writes), and the
+//! are the results that ship with the program (`knowledge.json`, which the experiment `knowledge` writes), and the
 //! rows of the same study that are finished. Across scenes, the spreads of flows of one profile differ by a factor
 //! of up to ten, so a spread from another scene counts as one degree of freedom only; the spreads of a study's rows
 //! differ less. Knowledge about the error of the step is the shares of its sizes among similar results, beside general

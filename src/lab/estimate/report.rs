@@ -1,57 +1,96 @@
-//! The answer as text, Markdown and CSV.
+//! The answer for readers and programs.
 
 use super::answer::{ABOUT, Answer, Row};
 use super::bounds::Bounded;
-use super::costs::name;
+use super::costs::name as name_of;
+use super::pictures::{bound_sheet, curve_sheet, sheet};
+use super::run::Runs;
+use super::validated::Validated;
+use crate::curves::csv as curves_csv;
 use crate::error::LabError;
 use analysis::round;
+use output::document::{Block, Document, Findings, Names};
 use output::table::{Columns, Table, as_precise};
+
+/// The names of the files with an answer: its results, the means at each step, bounds and curves.
+pub fn names(name: &str) -> Names {
+    let of = |end: &str| format!("{name}{end}");
+    let [steps, bounds, curves] = ["-steps", "-bounds", "-curves"].map(of);
+    Names::new(
+        name,
+        &[name, &steps, &bounds, &curves],
+        &[name, &bounds, &curves],
+    )
+}
 
 /// A row at one of its steps.
 type Step<'a> = (&'a Row, &'a super::answer::AtStep);
 
 impl Answer {
-    /// For a terminal.
-    pub fn text(&self) -> String {
-        self.lines(Table::text)
+    /// Everything for readers and programs, with these pictures of the results, of their curves and of the bounds.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn findings(&self, name: &str, runs: &Runs) -> Result<Findings, LabError> {
+        let names = names(name);
+        let [main, steps, bounds, curves] = [0, 1, 2, 3].map(|k| names.tables[k].as_str());
+        let mut blocks = self.blocks();
+        let mut tables = Vec::new();
+        if !self.results.is_empty() {
+            blocks.push(Block::figure(main, sheet(runs, self), ""));
+            tables.push((main, self.for_programs()));
+            tables.push((steps, self.steps_for_programs()));
+        }
+        if !self.bounds.is_empty() {
+            tables.push((bounds, self.bounds_for_programs()));
+        }
+        blocks.extend(bound_sheet(self).map(|sheet| Block::figure(bounds, sheet, "")));
+        let drawn = curve_sheet(runs, self);
+        if let Some((sheet, _)) = &drawn {
+            blocks.push(Block::figure(curves, sheet.clone(), ""));
+        }
+        let title = format!("Estimate of {}", self.scenario);
+        let findings = Findings::new(name, Document::of(title, blocks), self.json());
+        let mut findings = tables
+            .iter()
+            .try_fold(findings, |findings, (name, table)| {
+                findings.with_table(name, table)
+            })?;
+        if let Some((_, rows)) = &drawn {
+            findings.tables.push((curves.to_owned(), curves_csv(rows)?));
+        }
+        Ok(findings)
     }
 
-    /// As Markdown.
-    pub fn markdown(&self) -> String {
-        self.lines(Table::markdown)
-    }
-
-    fn lines(&self, table: fn(&Table) -> String) -> String {
+    fn blocks(&self) -> Vec<Block> {
         let settings = match self.settings.is_empty() {
             true => String::new(),
             false => format!(", {}", self.settings.join(", ")),
         };
-        let mut text = format!(
-            "{} ({}{settings}), {} % confidence. {ABOUT}\n\n",
+        let mut blocks = vec![Block::Text(format!(
+            "{} ({}{settings}), {} % confidence. {ABOUT}",
             self.scenario,
             self.profile,
             round::brief(100.0 * self.confidence),
-        );
+        ))];
         if !self.results.is_empty() {
-            text += &table(&self.results_table());
-            text += "\nMeans at each step (± standard deviation of runs):\n\n";
-            text += &table(&self.steps_table());
+            blocks.push(Block::table(self.results_table()));
+            let about = "Means at each step (± standard deviation of runs):";
+            blocks.push(Block::Table(self.steps_table(), about.to_owned()));
         }
         if !self.bounds.is_empty() {
-            let space = if self.results.is_empty() { "" } else { "\n" };
-            text += &format!(
-                "{space}Bounds on single runs, at one time step whose error is not part of them:\n\n"
-            );
-            text += &table(&self.bounds_table());
-            text += "\n";
-            for bound in &self.bounds {
-                text += &bound.sentence();
-            }
+            let about = "Bounds on single runs, at one time step whose error is not part of them:";
+            blocks.push(Block::Table(self.bounds_table(), about.to_owned()));
+            let sentences: String = self.bounds.iter().map(Bounded::sentence).collect();
+            blocks.push(Block::Text(sentences));
         }
-        text += &format!("\n{}\n", self.costs());
-        for validated in &self.validation {
-            text += &validated.text();
-        }
+        blocks.push(Block::Text(self.costs() + "\n" + &self.limits()));
+        blocks
+    }
+
+    /// What is known of the model's error, runs without values, and what was not reached, a line for each.
+    fn limits(&self) -> String {
+        let mut text: String = self.validation.iter().map(Validated::text).collect();
         for (name, share) in self.runs.notable() {
             text += &format!("{} of {} runs {name}: {share}.\n", share.count, share.of);
         }
@@ -147,7 +186,7 @@ impl Answer {
         let secs = |secs: Option<f64>| secs.map_or("none".to_owned(), round::brief);
         let costs = self.costs.iter();
         let costs =
-            costs.map(|cost| format!("{} {}", name(cost.timed.preset), secs(cost.all_secs)));
+            costs.map(|cost| format!("{} {}", name_of(cost.timed.preset), secs(cost.all_secs)));
         let costs: Vec<String> = costs.collect();
         if !costs.is_empty() {
             text += &format!(
@@ -162,10 +201,7 @@ impl Answer {
     }
 
     /// One line per result.
-    ///
-    /// # Errors
-    /// The table cannot be written.
-    pub fn csv(&self) -> Result<Vec<u8>, LabError> {
+    fn for_programs(&self) -> Table {
         let runs = |row: &Row| row.steps.iter().map(|at| at.runs).sum::<usize>();
         let finest = |row: &Row| row.steps.first().map(|at| at.step);
         let columns = Table::of(&self.results)
@@ -181,14 +217,11 @@ impl Answer {
             .column("finest_step_secs", finest)
             .column("order", |row| row.order)
             .column("missing", |row| row.missing);
-        Ok(columns.table().csv()?)
+        columns.table()
     }
 
     /// One line per bound.
-    ///
-    /// # Errors
-    /// The table cannot be written.
-    pub fn bounds_csv(&self) -> Result<Vec<u8>, LabError> {
+    fn bounds_for_programs(&self) -> Table {
         let columns = Table::of(&self.bounds)
             .column("result", |bound| bound.name.as_str())
             .column("share", |bound| bound.share)
@@ -201,20 +234,17 @@ impl Answer {
             .column("runs_per_population", |bound| bound.populations[1])
             .column("step_secs", |bound| bound.step)
             .column("missing", |bound| bound.missing);
-        Ok(columns.table().csv()?)
+        columns.table()
     }
 
     /// One line per result and step.
-    ///
-    /// # Errors
-    /// The table cannot be written.
-    pub fn steps_csv(&self) -> Result<Vec<u8>, LabError> {
+    fn steps_for_programs(&self) -> Table {
         let rows = self.steps();
         let columns = by_step(&rows)
             .column("mean", |(_, at)| at.mean)
             .column("deviation", |(_, at)| at.deviation)
             .column("error_of_step", |(_, at)| at.error_of_step);
-        Ok(columns.table().csv()?)
+        columns.table()
     }
 }
 

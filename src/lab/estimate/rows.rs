@@ -1,7 +1,6 @@
 //! The rows of a study, each with the errors asked for.
 
 use std::fmt;
-use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
 
@@ -15,7 +14,7 @@ use crate::error::LabError;
 use crate::sweep::{Cell, Study, plain};
 use analysis::round;
 use analysis::statistics::{MeanStd, Range};
-use output::plot::Print;
+use output::document::{Block, Document, Findings, Names};
 use output::table::{Columns, Table};
 use runs::identity::ENGINE;
 use runs::job::Listener;
@@ -61,11 +60,9 @@ impl<'a> Questions<'a> {
     }
 
     /// The names of the files with the answers.
-    pub fn files(&self) -> Vec<String> {
-        let pictures = Print::of_program().extensions();
-        let ends = ["json", "csv"].into_iter().chain(pictures);
+    pub fn files(&self) -> Names {
         let name = name(self.study);
-        ends.map(|end| format!("{name}.{end}")).collect()
+        Names::new(&name, &[&name], &[&name])
     }
 
     /// Makes the runs of all rows, row by row: each row knows the results of the rows before it.
@@ -94,18 +91,28 @@ impl<'a> Questions<'a> {
 type Line<'a> = (&'a Cell, Answer);
 
 impl Answers<'_> {
-    /// Writes `STUDY-estimate.json`, `.csv` and the picture into the store's folder, and returns the path of the table.
+    /// Everything for readers and programs: the table of all results, then their costs.
     ///
     /// # Errors
-    /// A file cannot be written.
-    pub fn write(&self, store: &Store) -> Result<PathBuf, LabError> {
+    /// A table cannot be written.
+    pub fn findings(&self) -> Result<Findings, LabError> {
+        let results = [Block::text(ABOUT), Block::table(self.table())];
+        let blocks = results.into_iter().chain(self.costs());
+        self.findings_with(blocks.collect())
+    }
+
+    /// The same with these blocks before the picture.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn findings_with(&self, mut blocks: Vec<Block>) -> Result<Findings, LabError> {
         let name = name(self.study);
-        let json = format!("{:#}\n", self.json());
-        store.write(&format!("{name}.json"), json.as_bytes())?;
         if !self.names().is_empty() {
-            self.sheet().save(&store.path(&name))?;
+            blocks.push(Block::figure(&name, self.sheet(), ""));
         }
-        Ok(store.write(&format!("{name}.csv"), &self.csv()?)?)
+        let title = format!("Estimates of the study {}", self.study.name);
+        let findings = Findings::new(&name, Document::of(title, blocks), self.json());
+        Ok(findings.with_table(&name, &self.for_programs())?)
     }
 
     /// The names of the wanted results.
@@ -132,8 +139,8 @@ impl Answers<'_> {
         json!({ "study": self.study.name, "about": ABOUT, "engine": ENGINE, "rows": rows })
     }
 
-    /// For a terminal: value ± error, and the number of runs.
-    pub fn text(&self) -> String {
+    /// For readers: value ± error, and the number of runs.
+    fn table(&self) -> Table {
         let mut columns = self.settings();
         for name in self.names() {
             columns = columns
@@ -152,18 +159,19 @@ impl Answers<'_> {
                 answer.bounds[k].value.map(round::brief)
             });
         }
-        format!("{ABOUT}\n\n{}\n{}", columns.table().text(), self.costs())
+        columns.table()
     }
 
     /// What the rows cost, and what each preset would have cost for the same errors: as a table, and in words.
-    pub fn costs(&self) -> String {
+    pub fn costs(&self) -> Vec<Block> {
         let Some((_, first)) = self
             .rows
             .first()
             .filter(|(_, first)| !first.costs.is_empty())
         else {
             let secs = self.rows.iter().map(|(_, answer)| answer.secs);
-            return format!("{} s of computing on one core.\n", round::brief(secs.sum()));
+            let secs = round::brief(secs.sum());
+            return vec![Block::Text(format!("{secs} s of computing on one core."))];
         };
         let mut columns = self
             .settings()
@@ -199,14 +207,11 @@ impl Answers<'_> {
                 Shares(&two_steps.collect::<Vec<_>>())
             );
         }
-        format!("{}\n{words}", columns.table().text())
+        vec![Block::table(columns.table()), Block::Text(words)]
     }
 
-    /// As CSV.
-    ///
-    /// # Errors
-    /// The table cannot be written.
-    pub fn csv(&self) -> Result<Vec<u8>, LabError> {
+    /// For programs: one row per combination of settings.
+    fn for_programs(&self) -> Table {
         let mut columns = self.settings();
         for name in self.names() {
             let reached = |line: &Line| Some(line.1.row(name)?.reached);
@@ -222,7 +227,7 @@ impl Answers<'_> {
         for (k, name) in self.bound_names().into_iter().enumerate() {
             columns = columns.column(&name, |(_, answer)| answer.bounds[k].value);
         }
-        Ok(columns.table().csv()?)
+        columns.table()
     }
 
     /// The names of bounds, with the share of runs in percent: `time_secs_95_percent`.

@@ -87,7 +87,7 @@ pub fn run<'a>(
 
 impl<'a> Runs<'a> {
     /// No runs yet; what ships with the program counts without the scene `but`.
-    pub(super) fn none(
+    pub fn none(
         question: &'a Question,
         rows: &[Known],
         but: Option<&str>,
@@ -221,7 +221,7 @@ impl<'a> Runs<'a> {
     }
 
     /// Makes runs until there are these many at each step.
-    pub(super) fn make(
+    pub fn make(
         &mut self,
         wanted: &[usize],
         store: &Store,
@@ -276,7 +276,7 @@ impl<'a> Runs<'a> {
     }
 
     /// The values of the result with this name.
-    pub(super) fn series_of(&self, name: &str) -> Series {
+    pub fn series_of(&self, name: &str) -> Series {
         let value = |result: &Result<RunResult, String>| {
             let result = result.as_ref().ok()?;
             number(result, name)

@@ -4,15 +4,12 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use super::pictures::STEMS;
 use super::record::RECORDING;
 use super::report::regions_table;
 use super::{CLASS, Class, Classes, Density, Measured, Moment, Safety};
-use crate::error::LabError;
 use analysis::exposure::PersonExposure;
 use analysis::statistics::MeanStd;
 use engine::math::Vector;
-use output::plot::Print;
 use output::table::{Cell, Table, csv_lines};
 use runs::error::StoreError;
 use runs::outputs::Replacement;
@@ -21,31 +18,23 @@ use scenario::trajectories::Tracks;
 
 /// All people, frame by frame.
 const AGENTS: &str = "agents.csv";
-const FIELDS: &str = "fields.csv";
-const DIAGRAM: &str = "fundamental_diagram.csv";
-const CLASSES: &str = "fundamental_classes.csv";
-const REGIONS: &str = "regions.csv";
-const FLOW: &str = "flow.csv";
-const EXPOSURE: &str = "exposure.csv";
-const ALARMS: &str = "alarms.csv";
+/// The other tables, by the names of their files.
+pub const TABLES: [&str; 7] = [
+    "fields",
+    "fundamental_diagram",
+    "fundamental_classes",
+    "regions",
+    "exposure",
+    "alarms",
+    "flow",
+];
 
 const AGENT_COLUMNS: &str = "frame,time,id,x,y,vel_x,vel_y,speed,density,density_from_walls,density_of_others,\
                              voronoi_density";
 const FIELD_COLUMNS: &str = "x,y,density,vel_x,vel_y,speed,flow_x,flow_y,people";
 
-/// The names of all files that a measurement may write, with its recording and its pictures.
-pub fn files() -> impl Iterator<Item = String> {
-    let tables = [
-        AGENTS, FIELDS, DIAGRAM, CLASSES, REGIONS, FLOW, EXPOSURE, ALARMS, RECORDING,
-    ];
-    let kinds: Vec<&str> = Print::of_program().extensions().collect();
-    let pictures = STEMS.map(|stem| {
-        let files = kinds.iter().map(|kind| format!("{stem}.{kind}"));
-        files.collect::<Vec<_>>()
-    });
-    let tables = tables.into_iter().map(str::to_owned);
-    tables.chain(pictures.into_iter().flatten())
-}
+/// The files that are written while the rows are measured.
+pub const STREAMED: [&str; 2] = [AGENTS, RECORDING];
 
 /// A folder for results, with an open file of people.
 pub struct Results {
@@ -106,28 +95,39 @@ impl Results {
         written.map_err(|error| unwritten(&self.store.path(AGENTS), &error))
     }
 
-    /// Writes the other files, and closes the file of people.
+    /// Closes the file of people.
     ///
     /// # Errors
-    /// A file cannot be written.
-    pub fn finish(mut self, measured: &Measured, tracks: &Tracks) -> Result<(), LabError> {
-        let (store, flushed) = (self.store, self.agents.flush());
+    /// The file cannot be written.
+    pub fn finish(mut self) -> Result<(), StoreError> {
+        let flushed = self.agents.flush();
         let kept = flushed.and_then(|()| self.replacement.keep());
-        kept.map_err(|error| unwritten(&store.path(AGENTS), &error))?;
-        let (diagrams, crossings) = (&measured.diagrams, &measured.crossings);
-        store.write(FIELDS, &fields(measured)?)?;
-        let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);
-        store.write(DIAGRAM, &csv_lines(&frames.collect::<Vec<_>>(), true)?)?;
-        store.write(CLASSES, &classes(measured).csv()?)?;
-        store.write(REGIONS, &regions_table(measured).csv()?)?;
-        store.write(EXPOSURE, &exposure(&measured.safety, tracks).csv()?)?;
-        store.write(ALARMS, &csv_lines(&measured.safety.samples, true)?)?;
-        if !crossings.is_empty() {
-            let all = crossings.iter().flat_map(|crossings| &crossings.list);
-            store.write(FLOW, &csv_lines(&all.collect::<Vec<_>>(), true)?)?;
-        }
-        Ok(())
+        kept.map_err(|error| unwritten(&self.store.path(AGENTS), &error))
     }
+}
+
+/// The contents of the files in [`TABLES`]; without lines there is no flow.
+pub fn tables(measured: &Measured, tracks: &Tracks) -> Result<Vec<(String, Vec<u8>)>, csv::Error> {
+    let frames = measured.diagrams.iter().flat_map(|diagram| &diagram.frames);
+    let crossings = measured.crossings.iter().flat_map(|line| &line.list);
+    let contents = [
+        fields(measured)?,
+        csv_lines(&frames.collect::<Vec<_>>(), true)?,
+        classes(measured).csv()?,
+        regions_table(measured).csv()?,
+        exposure(&measured.safety, tracks).csv()?,
+        csv_lines(&measured.safety.samples, true)?,
+        csv_lines(&crossings.collect::<Vec<_>>(), true)?,
+    ];
+    let mut tables: Vec<_> = TABLES
+        .map(str::to_owned)
+        .into_iter()
+        .zip(contents)
+        .collect();
+    if measured.crossings.is_empty() {
+        tables.pop();
+    }
+    Ok(tables)
 }
 
 fn unwritten(path: &Path, error: &std::io::Error) -> StoreError {

@@ -1,17 +1,28 @@
-//! The summary of a measurement, as text or JSON.
+//! The summary of a measurement.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value, json};
 
 use super::{
-    CLASS, Class, Classes, Crossings, Density, Diagram, Measured, Options, Way, safety_report,
+    CLASS, Class, Classes, Crossings, Density, Diagram, Measured, Options, Site, Way, output,
+    pictures, safety_report,
 };
+use crate::error::LabError;
+use ::output::document::{Block, Document, Findings, Names};
+use ::output::table::{Cell, Table};
 use analysis::crossing::Passages;
 use analysis::statistics::MeanStd;
 use engine::scene::Region;
-use output::table::{Cell, Table};
 use scenario::trajectories::Tracks;
+
+/// The name of the files with all results.
+const NAME: &str = "measured";
+
+/// The names of the files with results, but the file of all people and the recording.
+pub fn names() -> Names {
+    Names::new(NAME, &output::TABLES, &pictures::STEMS)
+}
 
 /// The summary of a measurement.
 pub struct Report<'a> {
@@ -24,63 +35,83 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// As text for a terminal.
-    pub fn text(&self) -> String {
-        let overview = &self.measured.overview;
-        let ([first, last], reach) = (overview.times, self.reach());
-        let spread = |of: &MeanStd| format!("{:.3} ± {:.3}", of.mean, of.population_std());
-        let empty = match overview.empty_frames {
-            0 => String::new(),
-            empty => format!(", {empty} without people"),
-        };
-        let mut text = format!(
-            "{} people, {} rows in {} frames at {} fps, {first:.2} s to {last:.2} s{empty}\n",
-            overview.people, overview.rows, overview.frames, self.tracks.fps,
-        );
-        text += &format!(
-            "  density  at people, over all rows\n\
-             \u{20}          SPH, own weight included  {} P/m², h = {} m (Eq. 9)\n\
-             \u{20}          SPH of the others         {} P/m²\n\
-             \u{20}          Voronoi, 1 / cell         {} P/m²{}\n",
-            spread(&overview.density),
-            self.options.kernel.support_radius,
-            spread(&overview.density_of_others),
-            spread(&overview.voronoi),
-            match self.options.cells.cut_off {
-                Some(radius) => format!(", cut off at {radius} m"),
-                None => String::new(),
-            },
-        );
-        if let Some((person, frame, time)) = overview.densest {
-            let place = person.position;
-            text += &format!(
-                "           SPH at most {:.3} P/m²: person {} at ({:.2}, {:.2}) m, {time:.2} s, frame {frame}\n",
-                person.density, person.id, place.x, place.y,
-            );
-        }
-        text += &match overview.speed.count {
-            0 => "  speed    unknown for all rows\n".to_owned(),
-            _ => format!(
-                "  speed    {} m/s, from {reach:.2} s before to {reach:.2} s after\n",
-                spread(&overview.speed),
-            ),
-        };
-        text += &format!("\n{}", safety_report::text(self.measured));
+    /// Everything for readers and programs, but the file of all people.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn findings(&self, site: &Site) -> Result<Findings, LabError> {
+        let mut blocks = self.overview();
+        blocks.extend(safety_report::blocks(self.measured));
         if !self.measured.crossings.is_empty() {
             let flow_of = self.options.flow_of;
-            text += &format!("\n{}", flows(&self.measured.crossings, flow_of).text());
+            blocks.push(Block::table(flows(&self.measured.crossings, flow_of)));
         }
-        text += &regions_text(self.measured);
+        blocks.extend(regions(self.measured));
         for (k, diagram) in self.measured.diagrams.iter().enumerate() {
             let place = diagram.region.map(|region| {
                 let [min, max] = [region.min, region.max].map(|p| format!("({}, {})", p.x, p.y));
                 format!("region {}: {min} to {max} m", k + 1)
             });
             let place = place.unwrap_or_else(|| "everywhere".to_owned());
-            let classes = classes(diagram).text();
-            text += &format!("\nfundamental diagram, {place}: speeds by density\n{classes}");
+            let caption = format!("Fundamental diagram, {place}: speeds by density.");
+            blocks.push(Block::Table(classes(diagram), caption));
         }
-        text
+        let figures = pictures::sheets(self.measured, site);
+        blocks.extend(figures.map(|(name, sheet)| Block::figure(name, sheet, "")));
+        let document = Document::of("Measurements in trajectories", blocks);
+        let mut findings = Findings::new(NAME, document, self.json());
+        findings.tables = output::tables(self.measured, self.tracks)?;
+        Ok(findings)
+    }
+
+    /// People, densities and speeds over all rows.
+    fn overview(&self) -> Vec<Block> {
+        let overview = &self.measured.overview;
+        let [first, last] = overview.times;
+        let empty = match overview.empty_frames {
+            0 => String::new(),
+            empty => format!(", {empty} without people"),
+        };
+        let mut blocks = vec![Block::Text(format!(
+            "{} people, {} rows in {} frames at {} fps, {first:.2} s to {last:.2} s{empty}",
+            overview.people, overview.rows, overview.frames, self.tracks.fps,
+        ))];
+        let cut_off = match self.options.cells.cut_off {
+            Some(radius) => format!(", cut off at {radius} m"),
+            None => String::new(),
+        };
+        let (reach, looks) = (self.options.kernel.support_radius, self.reach());
+        let rows = [
+            (
+                format!("SPH density, own weight included, h = {reach} m (Eq. 9) [P/m²]"),
+                overview.density,
+            ),
+            (
+                "SPH density of the others [P/m²]".to_owned(),
+                overview.density_of_others,
+            ),
+            (
+                format!("Voronoi density, 1 / cell{cut_off} [P/m²]"),
+                overview.voronoi,
+            ),
+            (
+                format!("speed, from {looks:.2} s before to {looks:.2} s after [m/s]"),
+                overview.speed,
+            ),
+        ];
+        let table = Table::of(&rows)
+            .column("at people, over all rows", |(name, _)| name.as_str())
+            .fixed("mean ± standard deviation", 3, |(_, of)| spread(*of))
+            .table();
+        blocks.push(Block::table(table));
+        if let Some((person, frame, time)) = overview.densest {
+            let place = person.position;
+            blocks.push(Block::Text(format!(
+                "Highest SPH density: {:.3} P/m², person {} at ({:.2}, {:.2}) m, {time:.2} s, frame {frame}.",
+                person.density, person.id, place.x, place.y,
+            )));
+        }
+        blocks
     }
 
     /// Time that a velocity looks back and ahead, seconds.
@@ -257,12 +288,9 @@ fn region_means(measured: &Measured) -> Vec<RegionMeans<'_>> {
     rows.collect()
 }
 
-/// The means of regions as text; empty without regions.
-fn regions_text(measured: &Measured) -> String {
+/// The means of regions; nothing without regions.
+fn regions(measured: &Measured) -> Option<Block> {
     let rows = region_means(measured);
-    if rows.is_empty() {
-        return String::new();
-    }
     let [from, until] = measured.overview.times;
     let table = Table::of(&rows)
         .column("region", |row| row.number)
@@ -272,11 +300,11 @@ fn regions_text(measured: &Measured) -> String {
         .fixed("speed [m/s]", 3, |row| spread(row.means.speed))
         .fixed("flow [1/(m s)]", 3, |row| spread(row.means.flow))
         .table();
-    format!(
-        "\nregions, means over {} frames from {from:.2} s to {until:.2} s\n{}",
+    let caption = format!(
+        "Regions, means over {} frames from {from:.2} s to {until:.2} s.",
         measured.overview.frames,
-        table.text()
-    )
+    );
+    (!rows.is_empty()).then_some(Block::Table(table, caption))
 }
 
 /// The means of regions as a table for programs.

@@ -1,4 +1,4 @@
-//! Quantities for safety engineers, as text and JSON.
+//! Quantities for safety engineers, for readers and programs.
 
 use serde_json::{Value, json};
 
@@ -6,35 +6,36 @@ use super::{Departures, Measured, Safety};
 use analysis::crowd_pressure::BEFORE_ACCIDENT;
 use analysis::exposure::{Alarm, DENSITIES, Exposed, SLOW};
 use analysis::service::LEVELS;
+use output::document::Block;
 use output::table::Table;
 
-/// As text for a terminal.
-pub fn text(measured: &Measured) -> String {
+/// For readers.
+pub fn blocks(measured: &Measured) -> Vec<Block> {
     let (safety, departures) = (&measured.safety, &measured.departures);
-    let mut text = format!(
-        "exposure and alarms, a sample every {:.2} s; thresholds from the literature, not safety limits\n\
-         densities are means over √5 m, not the SPH density over 1 m\n{}",
+    let exposures = format!(
+        "Exposure and alarms, a sample every {:.2} s; thresholds are from the literature, not safety limits. Densities \
+         are means over √5 m, not the SPH density over 1 m.",
         safety.secs,
-        exposure(safety).text()
     );
-    text += &format!(
-        "\nlevel of service (Fruin 1971), shares of person-seconds in %; planning values, not safety limits\n{}",
-        levels(safety).text()
-    );
+    let service = "Level of service (Fruin 1971), shares of person-seconds in %; planning values, not safety limits.";
+    let mut blocks = vec![
+        Block::Table(exposure(safety), exposures),
+        Block::Table(levels(safety), service.to_owned()),
+    ];
     if let Some((person, time)) = safety.pressures.peak {
         let place = person.position;
-        text += &format!(
-            "\ncrowd pressure  at most {:.4} 1/s² at ({:.2}, {:.2}) m, {time:.2} s, {:.2} P/m²; mean {:.4} 1/s²\n\
-             \u{20}               {}\n",
+        blocks.push(Block::Text(format!(
+            "Crowd pressure: at most {:.4} 1/s² at ({:.2}, {:.2}) m, {time:.2} s, {:.2} P/m²; mean {:.4} 1/s²; {}.",
             person.pressure.unwrap_or_default(),
             place.x,
             place.y,
             person.density,
             safety.pressures.mean().unwrap_or_default(),
             threshold(safety),
-        );
+        )));
     }
-    text + &left(departures)
+    blocks.push(Block::Text(left(departures)));
+    blocks
 }
 
 /// Who was above the pressure at which crowd turbulence began once: it is known only for packed crowds.
@@ -70,8 +71,7 @@ fn left(departures: &Departures) -> String {
     ]
     .map(time);
     format!(
-        "\nlast seen       {left} of {people} people before the last frame: 50 % by {half}, 95 % by {most}, all by \
-         {all}\n"
+        "Last seen before the last frame: {left} of {people} people, 50 % by {half}, 95 % by {most}, all by {all}."
     )
 }
 

@@ -83,11 +83,11 @@ pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> Result<Document
         settings::changes_profile(scenario),
     )?);
     blocks.extend(again(scenario, &summary, sources.command, sources.report));
-    Ok(Document {
-        title: format!("Report on the run {}", scenario.name),
-        subtitle: scenario.description.clone(),
+    Ok(Document::numbered(
+        format!("Report on the run {}", scenario.name),
+        scenario.description.clone(),
         blocks,
-    })
+    ))
 }
 
 /// What the program said of the scenario and of the run; nothing if it said nothing.
@@ -108,7 +108,7 @@ fn pictures(run: &Run, watched: &Watched) -> Vec<Block> {
     let figure = |(still, caption): (&Still, String)| {
         let colors = "Colors: the SPH densities at the agents.";
         let sheet = still.sheet(&run.scenario, &print());
-        Block::figure(sheet, format!("{caption} {colors}"))
+        Block::figure("", sheet, format!("{caption} {colors}"))
     };
     pictures.map(figure).collect()
 }
@@ -122,7 +122,7 @@ fn highest(scenario: &Scenario, watched: &Watched) -> Option<Block> {
          The highest of all is {most:.2} P/m².",
         peaks.cell
     );
-    Some(Block::figure(peaks.sheet(scenario, &print()), caption))
+    Some(Block::figure("", peaks.sheet(scenario, &print()), caption))
 }
 
 /// How people leave; nothing if nobody does.
@@ -137,7 +137,7 @@ fn egress(simulation: &Simulation, summary: &Summary) -> Vec<Block> {
                  the last row of all who entered. Goals: people without an exit.";
     let blocks = [
         Block::heading("Egress"),
-        Block::figure(egress.sheet(""), curve),
+        Block::figure("", egress.sheet(""), curve),
         Block::Table(egress.table(), table.to_owned()),
     ];
     let blocks = blocks.into_iter().chain(journeys(&summary.journeys));

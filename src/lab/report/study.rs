@@ -1,6 +1,7 @@
 //! The report of a study: its runs side by side, with their spread.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use super::{facts, limits, settings, status};
 use crate::curves::{BAND, Curve, curves, panel};
@@ -34,11 +35,11 @@ struct Number {
     value: Value,
 }
 
-/// The report of the finished runs of a study, which `command` computes; `report` makes the report.
+/// The report of the finished runs of a study in this file, whose results are in this folder.
 ///
 /// # Errors
 /// No run is finished, or a scenario has become invalid.
-pub fn of_study(gathered: &Gathered, [command, report]: [&str; 2]) -> Result<Document, LabError> {
+pub fn of_study(gathered: &Gathered, file: &Path, folder: &Path) -> Result<Document, LabError> {
     let study = gathered.study;
     let combinations = gathered.combinations();
     let finished: usize = combinations.iter().map(|one| one.results.len()).sum();
@@ -95,17 +96,21 @@ pub fn of_study(gathered: &Gathered, [command, report]: [&str; 2]) -> Result<Doc
         scenarios.iter().any(settings::changes_profile),
     )?);
     blocks.push(Block::heading("How to run it again"));
-    blocks.push(Block::Code(vec![command.to_owned(), report.to_owned()]));
+    let (file, folder) = (file.display(), folder.display());
+    blocks.push(Block::Code(vec![
+        format!("sandbox sweep {file} --out {folder}"),
+        format!("sandbox report {file} --results {folder}"),
+    ]));
     blocks.push(Block::Table(cells(gathered), format!(
         "The runs. Digest: the first {DIGITS} of 64 digits of the SHA-256 of the final state, which the same version \
          gives again on any number of threads (version {}, engine {ENGINE}).",
         env!("CARGO_PKG_VERSION")
     )));
-    Ok(Document {
-        title: format!("Report on the study {}", study.name),
-        subtitle: description.to_owned(),
+    Ok(Document::numbered(
+        format!("Report on the study {}", study.name),
+        description.to_owned(),
         blocks,
-    })
+    ))
 }
 
 /// The varied settings of a combination in words.
@@ -220,7 +225,7 @@ fn figures(gathered: &Gathered, combinations: &[Combination], names: &[String]) 
                 columns: 2,
                 ..sheet.clone()
             };
-            Block::figure(part, caption)
+            Block::figure("", part, caption)
         }));
     }
     let all = combinations.iter().zip(names).enumerate();
@@ -240,7 +245,7 @@ fn figures(gathered: &Gathered, combinations: &[Combination], names: &[String]) 
         let columns = panels.len().min(2);
         let sheet = Sheet::new("", columns, [220.0, 160.0], with_legend(panels, columns));
         let caption = format!("Mean curves over the seeds; {BAND}.");
-        blocks.push(Block::figure(sheet, caption));
+        blocks.push(Block::figure("", sheet, caption));
     }
     blocks
 }

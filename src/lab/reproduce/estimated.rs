@@ -7,17 +7,21 @@ use super::table1::{value_with_band, varied};
 use crate::error::LabError;
 use crate::estimate::{ABOUT, Answer, Answers, Reached};
 use crate::sweep::Cell;
+use output::document::{Block, Findings};
 use output::table::Table;
 
 /// A row of the paper beside ours.
 type Row<'a> = (PublishedRow, &'a Answer);
 
-/// The table as Markdown: a verdict says whether the whole interval of our value is inside of the band around the
+/// The name of the table in documents.
+pub const ESTIMATED: &str = "table1-estimate";
+
+/// The table: a verdict says whether the whole interval of our value is inside of the band around the
 /// paper's.
 ///
 /// # Errors
 /// The paper's values cannot be read, or it has no such row.
-pub fn estimated(answers: &Answers) -> Result<String, LabError> {
+pub fn estimated(answers: &Answers) -> Result<Findings, LabError> {
     let paper = published().table1.rows;
     let rows = answers.rows.iter().map(|(cell, answer)| {
         let row = paper.iter().find(|row| is_of(cell, row)).cloned();
@@ -60,13 +64,19 @@ pub fn estimated(answers: &Answers) -> Result<String, LabError> {
             });
     }
     let [kept, undecided, missed] = counts;
-    Ok(format!(
-        "{}\n{kept} of {} values are inside their bands with their whole interval, {missed} outside, {undecided} \
-         neither: {BANDS_IN_WORDS}. The paper's values are those of its time step, ours of the limit of fine steps. \
-         {ABOUT}\n",
-        columns.table().markdown(),
+    let verdict = format!(
+        "{kept} of {} values are inside their bands with their whole interval, {missed} outside, {undecided} neither: \
+         {BANDS_IN_WORDS}. The paper's values are those of its time step, ours of the limit of fine steps. {ABOUT}",
         counts.iter().sum::<usize>(),
-    ))
+    );
+    let mut blocks = vec![
+        Block::Part(ESTIMATED.to_owned(), "Table 1 with errors".to_owned()),
+        Block::table(columns.table()),
+        Block::text(verdict),
+        Block::Part("costs".to_owned(), "Costs".to_owned()),
+    ];
+    blocks.extend(answers.costs());
+    answers.findings_with(blocks)
 }
 
 /// Whether a cell has the settings of a row.

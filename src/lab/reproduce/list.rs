@@ -1,14 +1,15 @@
 //! The tables and figures that can be reproduced.
 
 use super::product::{Needs, Product};
-use super::{figures, physics, questions, table1, table2};
+use super::{figures, questions, table1, table2};
 use crate::error::LabError;
 use crate::jobs::finished;
 use crate::sweep::{Gathered, Study};
+use output::document::Findings;
 use runs::job::{self, Listener};
 use runs::store::Store;
 
-/// All products, in the paper's order, then open questions.
+/// All products, in the paper's order, then questions about the tables.
 pub const PRODUCTS: &[Product] = &[
     table1::PRODUCT,
     table2::PRODUCT,
@@ -22,24 +23,18 @@ pub const PRODUCTS: &[Product] = &[
     figures::FIG11,
     figures::STUDY,
     questions::PRODUCT,
-    physics::OSCILLATIONS,
-    physics::SWAYING,
-    physics::SWAYING_RATES,
-    physics::START_WAVES,
-    physics::QUEUE_PUSHES,
-    physics::PHENOMENA,
 ];
 
-/// Computes the missing runs of `products` and writes the products. Returns the text about each.
+/// Computes the missing runs of `products`, and returns what each found.
 ///
 /// # Errors
-/// A run fails, or a file cannot be written.
+/// A run fails, or its result cannot be stored.
 pub fn reproduce(
     products: &[&Product],
     seeds: u64,
     store: &Store,
     listener: &dyn Listener,
-) -> Result<Vec<String>, LabError> {
+) -> Result<Vec<Findings>, LabError> {
     let studies: Result<Vec<Vec<Study>>, _> = products.iter().map(|p| p.studies(seeds)).collect();
     let studies = studies?;
     let mut jobs = Vec::new();
@@ -52,9 +47,9 @@ pub fn reproduce(
         }
     }
     finished(&job::run(&jobs, store, None, listener)?)?;
-    let write = |(product, studies): (&&Product, &Vec<Study>)| {
+    let find = |(product, studies): (&&Product, &Vec<Study>)| {
         let gathered = studies.iter().map(|study| Gathered::of(study, store));
-        (product.write)(&gathered.collect::<Vec<_>>(), store)
+        (product.find)(product, &gathered.collect::<Vec<_>>())
     };
-    products.iter().zip(&studies).map(write).collect()
+    products.iter().zip(&studies).map(find).collect()
 }

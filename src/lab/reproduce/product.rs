@@ -1,9 +1,11 @@
 //! Products: tables and figures.
 
+use serde_json::{Value, json};
+
 use crate::error::LabError;
 use crate::sweep::{Cell, Gathered, Study};
+use output::document::{Block, Document, Findings, Names};
 use output::plot::Sheet;
-use runs::store::Store;
 
 /// A table or a figure.
 pub struct Product {
@@ -17,8 +19,12 @@ pub struct Product {
     pub studies: &'static [&'static str],
     /// The cells that it needs.
     pub needs: Needs,
-    /// Writes its files into the store's folder from its studies, and returns a text about them.
-    pub write: fn(&[Gathered], &Store) -> Result<String, LabError>,
+    /// The names of its tables for programs.
+    pub tables: &'static [&'static str],
+    /// Whether it has a figure, which has its name.
+    pub has_figure: bool,
+    /// What its studies found.
+    pub find: fn(&Product, &[Gathered]) -> Result<Findings, LabError>,
 }
 
 /// The cells that a product needs of its studies.
@@ -44,6 +50,24 @@ impl Needs {
 }
 
 impl Product {
+    /// The names of its files.
+    pub fn names(&self) -> Names {
+        let figures: &[&str] = if self.has_figure { &[self.name] } else { &[] };
+        Names::new(self.name, self.tables, figures)
+    }
+
+    /// Its findings of these blocks.
+    pub fn findings(&self, blocks: Vec<Block>, data: Value) -> Findings {
+        Findings::new(self.name, Document::of(self.about, blocks), data)
+    }
+
+    /// Its findings if it is a figure.
+    pub fn figure(&self, sheet: Sheet) -> Findings {
+        let figure = Block::figure(self.name, sheet, self.about);
+        let data = json!({ "figure": self.name, "about": self.about });
+        self.findings(vec![figure], data)
+    }
+
     /// Its studies, with `seeds` seeds per row if it is a table.
     ///
     /// # Errors
@@ -53,11 +77,4 @@ impl Product {
         let study = |name: &&str| Ok(Study::built_in(name, seeds, None)?);
         self.studies.iter().map(study).collect()
     }
-}
-
-/// Writes a picture into the store's folder, and returns a line with the file names.
-pub(super) fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, LabError> {
-    let stem = store.path(name);
-    sheet.save(&stem)?;
-    Ok(format!("{0}.svg, {0}.png\n", stem.display()))
 }

@@ -8,8 +8,8 @@ use super::table2::CrossingTable;
 use crate::error::LabError;
 use crate::sweep::{Combination, Gathered};
 use analysis::statistics::{MeanStd, Range};
+use output::document::{Block, Findings};
 use output::table::{Cell, Table};
-use runs::store::Store;
 
 /// Answers to all questions.
 pub const PRODUCT: Product = Product {
@@ -25,7 +25,9 @@ pub const PRODUCT: Product = Product {
         CROSSING,
     ],
     needs: Needs::Seeds,
-    write,
+    tables: &[],
+    has_figure: false,
+    find,
 };
 
 /// The study about Table 2; its list has that table's profiles once for each geometry.
@@ -45,36 +47,31 @@ const COLUMNS: [(&str, &str); 10] = [
     ("flow_between_pauses_per_s", "flow between pauses"),
 ];
 
-fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
-    let (mut markdown, mut data) = (String::new(), Vec::new());
+fn find(product: &Product, studies: &[Gathered]) -> Result<Findings, LabError> {
+    let seeds = studies.first().map_or(0, |study| study.study.seeds);
+    let mut blocks = vec![Block::text(format!(
+        "Over {seeds} seed(s): mean ± half the 95 % confidence interval of the mean (Student's t)."
+    ))];
+    let mut data = Vec::new();
     for study in studies {
         let about = study.study.document["description"]
             .as_str()
             .unwrap_or_default();
         let (title, text) = about.split_once("? ").unwrap_or((about, ""));
         let combinations = study.combinations();
-        let rankings = match study.study.name.as_str() {
-            CROSSING => rankings(&combinations)?,
-            _ => String::new(),
-        };
-        markdown += &format!(
-            "### {title}?\n\n{text}\n\n{rankings}{}\n",
-            table(&combinations)
-        );
+        blocks.push(Block::Heading(format!("{title}?")));
+        blocks.push(Block::text(text));
+        if study.study.name == CROSSING {
+            blocks.push(Block::table(rankings(&combinations)?));
+        }
+        blocks.push(Block::table(table(&combinations)));
         data.push(json!({ "question": title, "study": study.json() }));
     }
-    let seeds = studies.first().map_or(0, |study| study.study.seeds);
-    let markdown = format!(
-        "Over {seeds} seed(s): mean ± half the 95 % confidence interval of the mean (Student's t).\n\n{markdown}"
-    );
-    let json = json!({ "seeds": seeds, "questions": data });
-    store.write("questions.md", markdown.as_bytes())?;
-    store.write("questions.json", format!("{json:#}\n").as_bytes())?;
-    Ok(markdown)
+    Ok(product.findings(blocks, json!({ "seeds": seeds, "questions": data })))
 }
 
 /// One line per entry of the list.
-fn table(combinations: &[Combination]) -> String {
+fn table(combinations: &[Combination]) -> Table {
     let measured = |metric: &str| {
         let mut values = combinations.iter().flat_map(|row| row.values(metric));
         values.any(|value| value.is_some())
@@ -92,7 +89,7 @@ fn table(combinations: &[Combination]) -> String {
             }
         });
     }
-    table.table().markdown()
+    table.table()
 }
 
 /// The number of all seeds, or the least, the median and the largest one.
@@ -109,7 +106,7 @@ fn evacuated(values: &[f64]) -> String {
 }
 
 /// Which rankings of Table 2 hold in each geometry, and how many agents of the crossing stream get through.
-fn rankings(combinations: &[Combination]) -> Result<String, LabError> {
+fn rankings(combinations: &[Combination]) -> Result<Table, LabError> {
     let profiles = published().table2.rows.len();
     let mut geometries = Vec::new();
     for rows in combinations.chunks(profiles) {
@@ -131,15 +128,15 @@ fn rankings(combinations: &[Combination]) -> Result<String, LabError> {
         let broken = broken.map(|r| format!("{} {} > {}", r.quantity, r.higher, r.lower));
         broken.collect::<Vec<_>>().join("; ")
     };
-    let table = Table::of(&geometries)
+    Ok(Table::of(&geometries)
         .column("geometry", |geometry| geometry.name)
         .column("flow", |geometry| kept(geometry, "flow"))
         .column("density", |geometry| kept(geometry, "density"))
         .column("broken", broken)
         .range("of the stream through in 60 s:", 0, |geometry| {
             geometry.through
-        });
-    Ok(format!("{}\n", table.table().markdown()))
+        })
+        .table())
 }
 
 /// Table 2 in one geometry.

@@ -1,14 +1,11 @@
 //! The rows of Tables 1 and 2: the paper's values beside ours.
 
 use serde::Serialize;
-use serde_json::Value;
 
 use super::comparison::{Band, Comparison};
 use super::published::{PublishedRow, Varied, written};
-use crate::error::LabError;
 use crate::sweep::Combination;
 use output::table::{Columns, Table};
-use runs::store::Store;
 
 /// The bands of density, its deviation and flow around the paper's values, the same for all rows: where one more run
 /// lies with 95 % beside the mean of ten, t √(1 + 1/10) s. s is the standard deviation over seeds of Table 1, pooled
@@ -140,18 +137,12 @@ pub(super) fn profiles(rows: &[Row]) -> Columns<'_, Row> {
     Table::of(rows).column("profile", |row| written(&row.profile))
 }
 
-/// Writes a table in three formats; the CSV has a line per quantity.
-pub(super) fn write(
-    store: &Store,
-    name: &str,
-    markdown: &str,
-    rows: &[Row],
-    json: &Value,
-) -> Result<(), LabError> {
+/// A table for programs, with a line per quantity.
+pub(super) fn for_programs(rows: &[Row]) -> Table {
     let with_row = |row| Row::quantities(row).into_iter().map(move |q| (row, q));
     let quantities: Vec<(&Row, Quantity)> = rows.iter().flat_map(with_row).collect();
     let varied = |row: &'_ Row| row.varied.clone();
-    let csv = Table::of(&quantities)
+    Table::of(&quantities)
         .column("profile", |(row, _)| row.profile.as_str())
         .column("setting", |(row, _)| {
             varied(row).map_or(String::new(), |of| of.setting)
@@ -167,9 +158,6 @@ pub(super) fn write(
         .column("seeds", |(.., (.., of))| of.seeds)
         .column("difference", |(.., (.., of))| of.difference())
         .column("relative_difference", |(.., (.., of))| of.relative())
-        .column("kept", |(.., (.., of))| of.is_kept());
-    store.write(&format!("{name}.md"), markdown.as_bytes())?;
-    store.write(&format!("{name}.csv"), &csv.table().csv()?)?;
-    store.write(&format!("{name}.json"), format!("{json:#}\n").as_bytes())?;
-    Ok(())
+        .column("kept", |(.., (.., of))| of.is_kept())
+        .table()
 }

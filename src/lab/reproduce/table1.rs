@@ -8,7 +8,8 @@ use super::published::{PublishedRow, Varied, published};
 use super::row::{self, BANDS, Row, compared, profiles};
 use crate::error::LabError;
 use crate::sweep::{Combination, Gathered};
-use runs::store::Store;
+use output::document::{Block, Findings};
+use output::table::Table;
 use scenario::{Scenario, Setting};
 
 /// The table.
@@ -18,7 +19,9 @@ pub const PRODUCT: Product = Product {
     in_all: true,
     studies: &["table1"],
     needs: Needs::Seeds,
-    write,
+    tables: &["table1"],
+    has_figure: false,
+    find,
 };
 
 /// The scenario.
@@ -102,12 +105,11 @@ pub(super) fn varied(Varied { setting, value }: &Varied) -> String {
     format!("{symbol} = {value}")
 }
 
-fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
+fn find(product: &Product, studies: &[Gathered]) -> Result<Findings, LabError> {
     let results = &studies[0];
     let published = published();
     let rows = rows(results)?;
     let seeds = results.study.seeds;
-    let markdown = format!("{}\n{}\n", markdown(&rows), row::kept(&rows, seeds));
     let as_json = |row: &Row| {
         let mut value = json!(row);
         value["missed"] = json!(row.missed());
@@ -119,11 +121,15 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
         "seeds": seeds,
         "rows": rows.iter().map(as_json).collect::<Vec<_>>(),
     });
-    row::write(store, "table1", &markdown, &rows, &json)?;
-    Ok(markdown)
+    let blocks = vec![
+        Block::table(table(&rows)),
+        Block::text(row::kept(&rows, seeds)),
+    ];
+    let findings = product.findings(blocks, json);
+    Ok(findings.with_table(product.name, &row::for_programs(&rows))?)
 }
 
-fn markdown(rows: &[Row]) -> String {
+fn table(rows: &[Row]) -> Table {
     let evacuated = |row: &Row| row.evacuated.clone();
     let columns = profiles(rows)
         .column("setting", |row| row.varied.as_ref().map(varied))
@@ -133,8 +139,5 @@ fn markdown(rows: &[Row]) -> String {
                 .and_then(|of| of.ours)
                 .map_or(0.0, |ours| ours.mean)
         });
-    compared(columns)
-        .column("band", row::verdict)
-        .table()
-        .markdown()
+    compared(columns).column("band", row::verdict).table()
 }

@@ -8,8 +8,8 @@ use super::ranking::{LEAST_DIFFERENCE, Ranked, Ranking, rankings};
 use super::row::{self, Row, compared, profiles};
 use crate::error::LabError;
 use crate::sweep::{Combination, Gathered};
+use output::document::{Block, Findings};
 use output::table::Table;
-use runs::store::Store;
 
 /// The table.
 pub const PRODUCT: Product = Product {
@@ -18,7 +18,9 @@ pub const PRODUCT: Product = Product {
     in_all: true,
     studies: &["table2"],
     needs: Needs::Seeds,
-    write,
+    tables: &["table2"],
+    has_figure: false,
+    find,
 };
 
 /// The metrics of density, deviation and flow.
@@ -69,7 +71,7 @@ impl CrossingTable {
         [all.clone().filter(|r| r.is_kept()).count(), all.count()]
     }
 
-    fn rankings_markdown(&self) -> String {
+    fn rankings_table(&self) -> Table {
         let pair = |[a, b]: [f64; 2], sign| format!("{a:.2} {sign} {b:.2}");
         let either =
             |ranking: &Ranking, kept, broken| if ranking.is_kept() { kept } else { broken };
@@ -87,32 +89,30 @@ impl CrossingTable {
             })
             .column("ranking", |ranking| either(ranking, "kept", "**broken**"))
             .table()
-            .markdown()
     }
 
     /// The rows, the rankings, and how many of both are kept.
-    fn markdown(&self, seeds: usize) -> String {
+    fn blocks(&self, seeds: usize) -> Vec<Block> {
         let [flows, all_flows] = self.kept("flow");
         let [densities, all_densities] = self.kept("density");
         let percent = 100.0 * LEAST_DIFFERENCE;
-        format!(
-            "{}\n{}\n\nOf the rows that differ by more than {percent} % in the paper, {flows} of {all_flows} rankings \
-             of flow and {densities} of {all_densities} of density are kept.\n\n{}",
-            compared(profiles(&self.rows))
-                .column("band", row::verdict)
-                .table()
-                .markdown(),
-            row::kept(&self.rows, seeds),
-            self.rankings_markdown()
-        )
+        let rows = compared(profiles(&self.rows)).column("band", row::verdict);
+        vec![
+            Block::table(rows.table()),
+            Block::text(row::kept(&self.rows, seeds)),
+            Block::text(format!(
+                "Of the rows that differ by more than {percent} % in the paper, {flows} of {all_flows} rankings of flow \
+                 and {densities} of {all_densities} of density are kept."
+            )),
+            Block::table(self.rankings_table()),
+        ]
     }
 }
 
-fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
+fn find(product: &Product, studies: &[Gathered]) -> Result<Findings, LabError> {
     let results = &studies[0];
     let published = published();
     let table = CrossingTable::new(&results.combinations())?;
-    let markdown = table.markdown(results.study.seeds);
     let as_json = |ranking: &Ranking| {
         let mut value = json!(ranking);
         value["kept"] = json!(ranking.is_kept());
@@ -125,6 +125,6 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
         "rows": table.rows,
         "rankings": table.rankings.iter().map(as_json).collect::<Vec<_>>(),
     });
-    row::write(store, "table2", &markdown, &table.rows, &json)?;
-    Ok(markdown)
+    let findings = product.findings(table.blocks(results.study.seeds), json);
+    Ok(findings.with_table(product.name, &row::for_programs(&table.rows))?)
 }

@@ -14,6 +14,6 @@ pub use cell::{Cell, Limit};
 pub use condition::Condition;
 pub use fit::fit;
 pub use map::Detail;
-pub use report::{Finished, PARTS, Report};
+pub use report::{Finished, PARTS, Report, names};
 pub use rest::{Law, Remains, Rest};
 pub use suite::stress;

@@ -1,16 +1,19 @@
 //! The report of `sandbox stress`.
 
 use serde::Serialize;
+use serde_json::json;
 
 use super::cell::Cell;
 use super::condition::Condition;
 use super::fit::LEAST;
+use super::map::Detail;
+use super::pictures;
 use crate::error::LabError;
 use analysis::statistics::Range;
 use engine::stability::{Constants, FITTED};
+use output::document::{Block, Document, Findings, Names};
 use output::table::Table;
 use runs::case::RunResult;
-use runs::store::Store;
 
 /// A finished run of one of the studies.
 #[derive(Debug, Clone, Serialize)]
@@ -48,8 +51,17 @@ pub struct Report {
     pub jitter: Vec<Finished>,
 }
 
-/// The names of the tables.
+/// The names of the tables in documents.
 pub const PARTS: [&str; 3] = ["hard", "maps", "jitter"];
+/// The names of the files.
+const NAME: &str = "stress";
+const MAPS: &str = "maps";
+const HELD_OUT: &str = "held_out";
+
+/// The names of all files with results.
+pub fn names() -> Names {
+    Names::new(NAME, &[MAPS, HELD_OUT], &[MAPS])
+}
 
 impl Report {
     /// All violated requirements; empty if there are none.
@@ -72,46 +84,48 @@ impl Report {
         hard.chain(unstable).chain(short).collect()
     }
 
-    /// All results as Markdown, in the order of [`PARTS`].
-    pub fn parts(&self) -> [String; 3] {
-        [
-            hard_table(&self.hard),
-            self.maps(),
-            jitter_table(&self.jitter),
-        ]
-    }
-
-    /// Writes the tables into the store's folder.
+    /// Everything for readers and programs. `detail` has the points of the maps.
     ///
     /// # Errors
-    /// A file cannot be written.
-    pub fn write(&self, store: &Store) -> Result<(), LabError> {
-        let text: String = self.parts().map(|text| text + "\n").concat();
-        store.write("report.md", text.as_bytes())?;
-        store.write("maps.csv", &csv(&self.cells)?)?;
-        store.write("held_out.csv", &csv(&self.held_out)?)?;
-        let json = format!("{}\n", serde_json::json!(self));
-        store.write("stress.json", json.as_bytes())?;
-        Ok(())
+    /// A table cannot be written.
+    pub fn findings(&self, detail: &Detail) -> Result<Findings, LabError> {
+        let [hard, maps, jitter] = PARTS;
+        let part = |name: &str, heading: &str| Block::Part(name.to_owned(), heading.to_owned());
+        let mut blocks = vec![
+            part(hard, "Hard cases"),
+            Block::table(hard_table(&self.hard)),
+            part(maps, "The largest stable time step"),
+        ];
+        blocks.extend(self.maps());
+        let sheet = pictures::sheet(&self.cells, detail);
+        blocks.push(Block::figure(MAPS, sheet, "The maps."));
+        blocks.push(part(jitter, "Crowds at rest"));
+        blocks.push(Block::table(jitter_table(&self.jitter)));
+        let document = Document::of("Stress tests", blocks);
+        let findings = Findings::new(NAME, document, json!(self));
+        let findings = findings.with_table(MAPS, &rows(&self.cells))?;
+        Ok(findings.with_table(HELD_OUT, &rows(&self.held_out))?)
     }
 
-    fn maps(&self) -> String {
+    fn maps(&self) -> [Block; 5] {
         let constants = |c: &Constants| {
             format!(
                 "C₁ = {:.2}, C₂ = {:.2}, C₃ = {:.2}, margin {:.2} (Verlet {:.2})",
                 c.pressure, c.contact, c.drag, c.margin, c.verlet_margin
             )
         };
-        format!(
-            "{}\n{} Constants of the engine: {}. Fitted to these maps: {}.\n\n\
-             Places that the fit does not use, with other agents:\n\n{}\n{}\n",
-            map_table(&self.cells),
-            summary(&self.cells),
-            constants(&FITTED),
-            constants(&self.fitted),
-            map_table(&self.held_out),
-            summary(&self.held_out),
-        )
+        [
+            Block::table(map_table(&self.cells)),
+            Block::text(format!(
+                "{} Constants of the engine: {}. Fitted to these maps: {}.",
+                summary(&self.cells),
+                constants(&FITTED),
+                constants(&self.fitted),
+            )),
+            Block::text("Places that the fit does not use, with other agents:"),
+            Block::table(map_table(&self.held_out)),
+            Block::text(summary(&self.held_out)),
+        ]
     }
 }
 
@@ -132,7 +146,7 @@ fn summary(cells: &[Cell]) -> String {
     )
 }
 
-fn map_table(cells: &[Cell]) -> String {
+fn map_table(cells: &[Cell]) -> Table {
     let mut table = Table::of(cells)
         .column("k", |cell| cell.crowd.gas_constant)
         .column("ρ⁰max", |cell| cell.crowd.rest_density_max)
@@ -153,7 +167,7 @@ fn map_table(cells: &[Cell]) -> String {
                 format!("{:.2} → {:.2}", limit.fine_speed, limit.auto_speed)
             });
     }
-    table.table().markdown()
+    table.table()
 }
 
 /// The values of a hard case that must be zero.
@@ -167,7 +181,7 @@ fn yes(is_good: bool) -> &'static str {
     if is_good { "yes" } else { "**no**" }
 }
 
-fn hard_table(hard: &[Finished]) -> String {
+fn hard_table(hard: &[Finished]) -> Table {
     let table = Table::of(hard)
         .column("case", |run| run.label.as_str())
         .column("what it is", |run| run.description.as_str())
@@ -185,10 +199,10 @@ fn hard_table(hard: &[Finished]) -> String {
         .fixed("nearest centers [D_i + D_j]", 2, |run| {
             run.metric("closest_centers")
         });
-    table.table().markdown()
+    table.table()
 }
 
-fn jitter_table(jitter: &[Finished]) -> String {
+fn jitter_table(jitter: &[Finished]) -> Table {
     let mut table = Table::of(jitter).column("crowd", |run| run.label.as_str());
     for (name, metric) in [
         ("energy before the push [m²/s²]", "jitter_35_to_40s"),
@@ -203,11 +217,11 @@ fn jitter_table(jitter: &[Finished]) -> String {
         .fixed("nearest centers [D_i + D_j]", 2, |run| {
             run.metric("closest_centers")
         });
-    table.table().markdown()
+    table.table()
 }
 
 /// One row for each point and condition.
-fn csv(cells: &[Cell]) -> Result<Vec<u8>, csv::Error> {
+fn rows(cells: &[Cell]) -> Table {
     let rows = cells.iter().flat_map(|cell| {
         let limits = Condition::ALL.into_iter().zip(cell.limits);
         limits.map(|limit| (cell.crowd, limit))
@@ -225,5 +239,5 @@ fn csv(cells: &[Cell]) -> Result<Vec<u8>, csv::Error> {
         .column("largest_secs", |(_, (_, limit))| limit.largest)
         .column("fine_speed", |(_, (_, limit))| limit.fine_speed)
         .column("auto_speed", |(_, (_, limit))| limit.auto_speed);
-    table.table().csv()
+    table.table()
 }

@@ -5,7 +5,6 @@ use serde_json::Value;
 use super::cell::Cell;
 use super::fit::fit;
 use super::map::Detail;
-use super::pictures;
 use super::report::{Finished, Report};
 use crate::error::LabError;
 use crate::jobs::{read, results};
@@ -16,10 +15,10 @@ use runs::store::Store;
 /// Held-out crowds use the seeds after this one, which the maps do not use.
 const OTHER_PEOPLE: u64 = 100;
 
-/// Computes all results that are not in `store`, and writes tables and pictures.
+/// Computes all results that are not in `store`.
 ///
 /// # Errors
-/// A run fails, or a file cannot be written.
+/// A run fails, or a result cannot be stored.
 pub fn stress(detail: &Detail, store: &Store, listener: &dyn Listener) -> Result<Report, LabError> {
     let hard = Study::built_in("stress_hard", None, None)?;
     let jitter = Study::built_in("stress_jitter", None, None)?;
@@ -38,16 +37,13 @@ pub fn stress(detail: &Detail, store: &Store, listener: &dyn Listener) -> Result
         points.map(|point| read(&point)).collect()
     };
     let cells = points(crowds.len())?;
-    let report = Report {
+    Ok(Report {
         hard,
         fitted: fit(&cells),
         cells,
         held_out: points(held_out.len())?,
         jitter,
-    };
-    report.write(store)?;
-    pictures::sheet(&report.cells, detail).save(&store.path("maps"))?;
-    Ok(report)
+    })
 }
 
 /// The runs of these cells, with the next results.

@@ -2,6 +2,7 @@
 
 use super::check::Judgment;
 use super::report::{Finding, Report};
+use crate::gallery::distinct;
 use output::table::Table;
 
 /// The values of a kind, by profile.
@@ -19,20 +20,12 @@ pub fn is_fitted(finding: &Finding, check: usize) -> bool {
 
 impl Report<'_> {
     /// How many values of each profile are as expected: a table with a line for each kind of case, then for values that
-    /// the profile was fitted to, and for the others. Empty if no case has a kind.
-    pub(super) fn counts(&self) -> String {
-        let mut kinds: Vec<&str> = Vec::new();
-        for kind in self
-            .findings
-            .iter()
-            .filter_map(|one| one.case.kind.as_deref())
-        {
-            if !kinds.contains(&kind) {
-                kinds.push(kind);
-            }
-        }
+    /// the profile was fitted to, and for the others. `None` if no case has a kind.
+    pub(super) fn counts(&self) -> Option<Table> {
+        let kinds = self.findings.iter();
+        let kinds = distinct(kinds.filter_map(|one| one.case.kind.as_deref()));
         if kinds.is_empty() {
-            return String::new();
+            return None;
         }
         let of_kind = kinds.iter().map(|&kind| {
             self.line(kind, |finding, _| {
@@ -58,7 +51,7 @@ impl Report<'_> {
                 }
             });
         }
-        table.table().markdown() + "\n"
+        Some(table.table())
     }
 
     /// The values of which `counts` is true, given the finding and the number of the check.

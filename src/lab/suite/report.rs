@@ -1,6 +1,6 @@
 //! The report of a suite.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::changed::Changed;
 use super::check::Judgment;
@@ -10,8 +10,9 @@ use super::keys::Case;
 use super::status::Passed;
 use crate::error::LabError;
 use analysis::statistics::Range;
+use output::document::{Block, Document, Findings};
+use output::plot::Sheet;
 use output::table::Table;
-use runs::store::Store;
 
 /// The name of the check of walls.
 pub const THROUGH_WALLS: &str = "people through walls";
@@ -56,6 +57,8 @@ pub struct Report<'a> {
     pub skipped: Vec<Skipped<'a>>,
     /// What is not as in the suite.
     pub changed: Changed,
+    /// Figures of all results, by the names of their files.
+    pub figures: Vec<(&'static str, Sheet)>,
 }
 
 /// A check of a case, with all profiles and seeds.
@@ -169,36 +172,49 @@ impl<'a> Report<'a> {
         cases
     }
 
-    /// All results as Markdown: what was changed, a summary, a table, and the reasons of the misses.
-    pub fn markdown(&self) -> String {
-        let changed = match self.changed.is_anything() {
-            true => format!("**Not the suite as it is**: {}.\n\n", self.changed.text()),
-            false => String::new(),
-        };
-        changed + &self.results()
+    /// Everything for readers and programs.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn findings(&self) -> Result<Findings, LabError> {
+        let mut blocks = Vec::new();
+        if self.changed.is_anything() {
+            let changed = self.changed.text();
+            blocks.push(Block::Text(format!(
+                "**Not the suite as it is**: {changed}."
+            )));
+        }
+        if !self.findings.is_empty() {
+            blocks.push(Block::text(self.overview()));
+            blocks.extend(self.counts().map(Block::table));
+            blocks.push(Block::table(self.table(&self.rows())));
+            let reasons = self.reasons();
+            if !reasons.is_empty() {
+                blocks.push(Block::text("Known misses:"));
+                blocks.push(Block::List(reasons));
+            }
+        }
+        if !self.skipped.is_empty() {
+            let skipped = self.skipped.iter();
+            let skipped = skipped.map(|one| {
+                let (name, title) = (&one.case.name, one.case.title());
+                format!("**{name}**, {title}: {}.", one.why)
+            });
+            let count = self.skipped.len();
+            blocks.push(Block::Text(format!(
+                "Skipped because data are missing: {count}."
+            )));
+            blocks.push(Block::List(skipped.collect()));
+        }
+        let figures = self.figures.iter();
+        blocks.extend(figures.map(|(name, sheet)| Block::figure(name, sheet.clone(), "")));
+        let document = Document::of(format!("Results of the suite {}", self.suite.name), blocks);
+        let findings = Findings::new(&self.suite.name, document, self.json());
+        Ok(findings.with_table(&self.suite.name, &self.values())?)
     }
 
-    fn results(&self) -> String {
-        let lines = self.skipped.iter();
-        let lines = lines.map(|one| {
-            format!(
-                "- **{}**, {}: {}.\n",
-                one.case.name,
-                one.case.title(),
-                one.why
-            )
-        });
-        let skips = match self.skipped.len() {
-            0 => String::new(),
-            count => format!(
-                "Skipped, for want of data: {count}.\n\n{}",
-                lines.collect::<String>()
-            ),
-        };
-        if self.findings.is_empty() {
-            return skips;
-        }
-        let rows = self.rows();
+    /// How many cases each profile passes.
+    fn overview(&self) -> String {
         let checks = self.findings.iter().flat_map(|one| &one.checks);
         let mut walls = checks
             .filter(|check| check.quantity == THROUGH_WALLS)
@@ -207,19 +223,9 @@ impl<'a> Report<'a> {
             true => " In no run did anyone pass through a wall.",
             false => "",
         };
-        let counts: Vec<String> = self
-            .profiles
-            .iter()
-            .map(|profile| self.counted(profile))
-            .collect();
-        let counts = counts.join(", by ");
-        let table = self.table(&rows);
-        let parts = [self.reasons(), skips]
-            .into_iter()
-            .filter(|part| !part.is_empty());
-        let parts: String = parts.map(|part| format!("\n{part}")).collect();
-        let by_kind = self.counts();
-        format!("Passed by {counts}. Bold: not as expected.{walls}\n\n{by_kind}{table}{parts}")
+        let counts = self.profiles.iter().map(|profile| self.counted(profile));
+        let counts = counts.collect::<Vec<_>>().join(", by ");
+        format!("Passed by {counts}. Bold: not as expected.{walls}")
     }
 
     /// What a profile passes.
@@ -256,7 +262,7 @@ impl<'a> Report<'a> {
     }
 
     /// The reasons of known misses. Consecutive cases that the same profiles miss for the same reason share a line.
-    fn reasons(&self) -> String {
+    fn reasons(&self) -> Vec<String> {
         let mut reasons: Vec<(Vec<&str>, Vec<&str>, &str)> = Vec::new();
         for case in self.cases() {
             let missed = self.known_misses(case, false);
@@ -271,17 +277,10 @@ impl<'a> Report<'a> {
                 }
             }
         }
-        let lines = reasons.iter().map(|(cases, profiles, why)| {
-            format!(
-                "- **{}**, {}: {why}.\n",
-                cases.join(", "),
-                profiles.join(", ")
-            )
-        });
-        match reasons.is_empty() {
-            true => String::new(),
-            false => format!("Known misses:\n\n{}", lines.collect::<String>()),
-        }
+        let line = |(cases, profiles, why): (Vec<&str>, Vec<&str>, &str)| {
+            format!("**{}**, {}: {why}.", cases.join(", "), profiles.join(", "))
+        };
+        reasons.into_iter().map(line).collect()
     }
 
     fn rows(&self) -> Vec<Row<'_>> {
@@ -293,7 +292,7 @@ impl<'a> Report<'a> {
         rows.filter(Row::is_shown).collect()
     }
 
-    fn table(&self, rows: &[Row]) -> String {
+    fn table(&self, rows: &[Row]) -> Table {
         let first = |row: &Row, text: String| if row.check == 0 { text } else { String::new() };
         let mut table = Table::of(rows)
             .column("case", |row| first(row, row.case().name.clone()))
@@ -303,16 +302,11 @@ impl<'a> Report<'a> {
         for profile in &self.profiles {
             table = table.column(profile, move |row| row.values(profile));
         }
-        table.table().markdown()
+        table.table()
     }
 
-    /// Writes all results as Markdown, CSV and JSON into the store's folder, under the name of the suite.
-    ///
-    /// # Errors
-    /// A file cannot be written.
-    pub fn write(&self, store: &Store) -> Result<(), LabError> {
-        let name = |ending: &str| format!("{}.{ending}", self.suite.name);
-        store.write(&name("md"), self.markdown().as_bytes())?;
+    /// One row for each value.
+    fn values(&self) -> Table {
         let rows = self.findings.iter().flat_map(|finding| {
             let checks = finding.checks.iter();
             checks.map(move |check| (finding, check))
@@ -322,7 +316,7 @@ impl<'a> Report<'a> {
             let bound = check.expected.bounds()[k];
             bound.is_finite().then_some(bound)
         };
-        let csv = Table::of(&rows)
+        let values = Table::of(&rows)
             .column("case", |(finding, _)| finding.case.name.as_str())
             .column("profile", |(finding, _)| finding.profile.as_str())
             .column("seed", |(finding, _)| finding.seed)
@@ -332,11 +326,14 @@ impl<'a> Report<'a> {
             .column("most", |(_, check)| bound(check, 1))
             .column("passed", |(_, check)| check.is_passed());
         let changed = self.changed.text();
-        let csv = match self.changed.is_anything() {
-            true => csv.column("changed", |_| changed.as_str()),
-            false => csv,
-        };
-        store.write(&name("csv"), &csv.table().csv()?)?;
+        match self.changed.is_anything() {
+            true => values.column("changed", |_| changed.as_str()).table(),
+            false => values.table(),
+        }
+    }
+
+    /// One object for each case, profile and seed.
+    fn json(&self) -> Value {
         let entry = |finding: &Finding| {
             json!({
                 "case": finding.case.name, "profile": finding.profile, "seed": finding.seed,
@@ -345,12 +342,11 @@ impl<'a> Report<'a> {
         };
         let skipped = self.skipped.iter();
         let skipped = skipped.map(|one| json!({"case": one.case.name, "skipped": one.why}));
-        let mut entries: Vec<_> = self.findings.iter().map(entry).chain(skipped).collect();
+        let mut entries: Vec<Value> = self.findings.iter().map(entry).chain(skipped).collect();
         if self.changed.is_anything() {
             let entries = entries.iter_mut();
             entries.for_each(|entry| entry["changed"] = json!(self.changed));
         }
-        store.write(&name("json"), format!("{:#}\n", json!(entries)).as_bytes())?;
-        Ok(())
+        json!(entries)
     }
 }

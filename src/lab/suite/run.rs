@@ -11,10 +11,10 @@ use super::known::{check_runs, label};
 use super::report::{Finding, Report, Skipped, THROUGH_WALLS};
 use super::{data, deviations, diagrams, pictures};
 use crate::error::LabError;
-use crate::gallery::{distinct, save};
+use crate::gallery::distinct;
 use crate::jobs::{read, results};
 use crate::sweep::{Cell, Changes, Study, StudyError};
-use output::plot::Print;
+use output::document::Names;
 use runs::case::RunResult;
 use runs::job::Listener;
 use runs::store::Store;
@@ -123,23 +123,22 @@ impl Suite {
 }
 
 impl<'a> Planned<'a> {
-    /// The names of the result files: tables, pictures of cases, and with means those of all results.
-    pub fn files(&self, judged: Judged) -> Vec<String> {
-        let tables = ["md", "csv", "json"].map(|end| format!("{}.{end}", self.suite.name));
-        let drawn = self.cases.iter().filter(|case| case.picture.is_some());
-        let drawn = drawn.map(|case| format!("{}.png", case.name));
-        let sheets: &[&str] = match judged {
+    /// The names of the files with results; with means there are figures of all of them.
+    pub fn names(&self, judged: Judged) -> Names {
+        let figures: &[&str] = match judged {
             Judged::Means => &["fundamental", "passages", "deviations"],
             Judged::Seeds => &[],
         };
-        let sheets = sheets.iter().flat_map(|name| {
-            let ends = Print::of_program().extensions();
-            ends.map(move |end| format!("{name}.{end}"))
-        });
-        tables.into_iter().chain(drawn).chain(sheets).collect()
+        Names::new(&self.suite.name, &[&self.suite.name], figures)
     }
 
-    /// Computes the runs that are not in `store`, judges them, and writes tables and pictures.
+    /// The names of the pictures of single cases.
+    pub fn pictures(&self) -> impl Iterator<Item = String> {
+        let drawn = self.cases.iter().filter(|case| case.picture.is_some());
+        drawn.map(|case| format!("{}.png", case.name))
+    }
+
+    /// Computes the runs that are not in `store`, judges them, and draws the pictures of cases into its folder.
     ///
     /// # Errors
     /// A run fails, or a file cannot be written.
@@ -189,17 +188,17 @@ impl<'a> Planned<'a> {
         if judged == Judged::Means {
             findings = means(findings);
         }
-        let report = Report {
+        let mut report = Report {
             suite: self.suite,
             profiles,
             findings,
             skipped: self.skipped,
             changed: self.changed,
+            figures: Vec::new(),
         };
-        report.write(store)?;
         if judged == Judged::Means {
-            save(store.folder(), diagrams::sheets(&self.suite.cases, &runs))?;
-            save(store.folder(), deviations::sheet(&report))?;
+            report.figures = diagrams::sheets(&self.suite.cases, &runs);
+            report.figures.extend(deviations::sheet(&report));
         }
         pictures::save(&self.cases, &cells, store, listener)?;
         Ok(report)

@@ -6,40 +6,49 @@ use super::pictures::other;
 use crate::curves::{BAND, Curve, csv, curves, panel};
 use crate::error::LabError;
 use crate::gallery::{color, distinct, with_legend};
-use output::plot::{Print, Sheet};
-use runs::store::Store;
+use output::plot::Sheet;
 
 /// The most lines of a picture: colors repeat after them.
 const MOST_LINES: usize = 14;
 /// The most panels in a row.
 const COLUMNS: usize = 3;
 
-impl Study {
-    /// The names of the files with mean curves, if its runs measure any: a table and the picture.
-    pub fn curve_files(&self) -> Vec<String> {
-        let pictures = Print::of_program().extensions();
-        let ends = ["csv"].into_iter().chain(pictures);
-        ends.map(|end| format!("{}-curves.{end}", self.name))
-            .collect()
-    }
+/// The mean curves of a study, each with the label of its combination of settings.
+pub(super) struct MeanCurves<'a> {
+    study: &'a Study,
+    all: Vec<(String, Curve)>,
 }
 
 impl Gathered<'_> {
-    /// Writes `NAME-curves.csv` and the picture into the store's folder, if the runs measure curves. The picture has
-    /// the first combinations only, if there are many.
-    ///
-    /// # Errors
-    /// A file cannot be written.
-    pub(super) fn write_curves(&self, store: &Store) -> Result<Vec<String>, LabError> {
+    /// The mean curves, if the runs measure any.
+    pub(super) fn mean_curves(&self) -> MeanCurves<'_> {
         let combinations = self.combinations();
         let all = combinations.iter().flat_map(|one| {
             let label = other(one, &[], &self.study.axes);
             let own = curves(&one.results).into_iter();
             own.map(move |curve| (label.clone(), curve))
         });
-        let all: Vec<(String, Curve)> = all.collect();
+        MeanCurves {
+            study: self.study,
+            all: all.collect(),
+        }
+    }
+}
+
+impl MeanCurves<'_> {
+    /// As CSV; `None` without curves.
+    pub(super) fn csv(&self) -> Result<Option<Vec<u8>>, LabError> {
+        match self.all.is_empty() {
+            true => Ok(None),
+            false => csv(&self.all).map(Some),
+        }
+    }
+
+    /// As a picture of the first combinations; `None` without curves.
+    pub(super) fn sheet(&self) -> Option<Sheet> {
+        let all = &self.all;
         if all.is_empty() {
-            return Ok(Vec::new());
+            return None;
         }
         let labels = distinct(all.iter().map(|(label, _)| label.as_str()));
         let names = distinct(all.iter().map(|(_, curve)| curve.name.as_str()));
@@ -59,10 +68,6 @@ impl Gathered<'_> {
         let panels = with_legend(panels.collect(), COLUMNS);
         let title = format!("{}; {BAND}", self.study.name);
         let columns = COLUMNS.min(panels.len().max(1));
-        let sheet = Sheet::new(&title, columns, [220.0, 160.0], panels);
-        let name = format!("{}-curves", self.study.name);
-        store.write(&format!("{name}.csv"), &csv(&all)?)?;
-        sheet.save(&store.path(&name))?;
-        Ok(self.study.curve_files())
+        Some(Sheet::new(&title, columns, [220.0, 160.0], panels))
     }
 }

@@ -1,7 +1,6 @@
 //! The state of a study: its cells, finished, failed or missing, and means over seeds.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
 
@@ -10,7 +9,6 @@ use super::cell::Cell;
 use crate::error::LabError;
 use crate::gallery::distinct;
 use analysis::statistics::MeanStd;
-use output::plot::Sheet;
 use runs::case::RunResult;
 use runs::identity::ENGINE;
 use runs::store::Store;
@@ -78,28 +76,6 @@ impl<'a> Gathered<'a> {
             study,
             states: study.cells.iter().map(state).collect(),
         }
-    }
-
-    /// Writes `NAME.csv`, `NAME-summary.csv` and `NAME-results.json` into the store's folder, the picture as `NAME.svg`
-    /// and `NAME.png`, if there is one, and the mean curves, if there are any.
-    ///
-    /// # Errors
-    /// They cannot be written.
-    pub fn write(&self, store: &Store, sheet: Option<&Sheet>) -> Result<Vec<PathBuf>, LabError> {
-        let json = format!("{:#}\n", self.json()).into_bytes();
-        let tables = [self.cells_csv()?, self.summary_csv()?, json];
-        let mut files = self.study.files().into_iter();
-        let mut written = Vec::new();
-        for (table, file) in tables.iter().zip(&mut files) {
-            written.push(store.write(&file, table)?);
-        }
-        if let Some(sheet) = sheet {
-            sheet.save(&store.folder().join(&self.study.name))?;
-            written.extend(files.map(|file| store.folder().join(file)));
-        }
-        let curves = self.write_curves(store)?.into_iter();
-        written.extend(curves.map(|file| store.folder().join(file)));
-        Ok(written)
     }
 
     /// All results as one object.

@@ -6,7 +6,8 @@ use super::cell::{Cell, plain, short};
 use super::gathered::{Combination, Gathered, State};
 use super::{Shard, Study};
 use crate::error::LabError;
-use output::plot::Print;
+use output::document::{Block, Document, Findings, Names};
+use output::plot::Sheet;
 use output::table::{self, Columns, Table};
 use runs::case::RunResult;
 
@@ -36,22 +37,67 @@ const COUNTS: [Count; 9] = [
 
 type Row<'a> = (&'a Cell, &'a State);
 
-/// The ends of the names of the tables.
-const TABLES: [&str; 3] = [".csv", "-summary.csv", "-results.json"];
-
 impl Study {
-    /// The names of the result files: one row per cell, means over seeds, and everything as JSON; then the pictures.
-    pub fn files(&self) -> Vec<String> {
-        let tables = TABLES.into_iter().map(str::to_owned);
-        let pictures = Print::of_program().extensions();
-        let ends = tables.chain(pictures.map(|extension| format!(".{extension}")));
-        ends.map(|end| format!("{}{end}", self.name)).collect()
+    /// The names of the files with results: one row per cell, means over seeds, and mean curves if the runs measure any.
+    pub fn names(&self) -> Names {
+        let curves = self.curves_name();
+        Names::new(
+            &self.results_name(),
+            &[&self.name, &self.summary_name(), &curves],
+            &[&self.name, &curves],
+        )
+    }
+
+    /// The name of the files with all of it: the study's own file may be called `NAME.json`.
+    fn results_name(&self) -> String {
+        format!("{}-results", self.name)
+    }
+
+    fn summary_name(&self) -> String {
+        format!("{}-summary", self.name)
+    }
+
+    pub(super) fn curves_name(&self) -> String {
+        format!("{}-curves", self.name)
     }
 }
 
 impl Gathered<'_> {
-    /// All cells as CSV.
-    pub(super) fn cells_csv(&self) -> Result<Vec<u8>, LabError> {
+    /// Everything for readers and programs, with this picture.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn findings(&self, sheet: Option<Sheet>) -> Result<Findings, LabError> {
+        let name = &self.study.name;
+        let (means, about) = self.means_table();
+        let mut blocks = vec![Block::table(means), Block::text(about)];
+        blocks.extend(sheet.map(|sheet| Block::figure(name, sheet, "")));
+        let curves = self.mean_curves();
+        blocks.extend(curves.sheet().map(|sheet| {
+            let caption = "Mean curves over the seeds.";
+            Block::figure(&self.study.curves_name(), sheet, caption)
+        }));
+        let document = Document::of(format!("Results of the study {name}"), blocks);
+        let findings = Findings::new(&self.study.results_name(), document, self.json());
+        let mut findings = self.add_tables(findings)?;
+        if let Some(rows) = curves.csv()? {
+            findings.tables.push((self.study.curves_name(), rows));
+        }
+        Ok(findings)
+    }
+
+    /// Adds the tables of all cells and of the means over seeds.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn add_tables(&self, findings: Findings) -> Result<Findings, LabError> {
+        let findings = findings.with_table(&self.study.name, &self.cells_table())?;
+        let summary = self.study.summary_name();
+        Ok(findings.with_table(&summary, &self.summary_table())?)
+    }
+
+    /// All cells, one row each.
+    fn cells_table(&self) -> Table {
         let rows: Vec<Row> = self.study.cells.iter().zip(&self.states).collect();
         let metrics = self.metrics();
         let mut columns = self.first_columns(&rows, &self.study.axes, plain);
@@ -80,15 +126,12 @@ impl Gathered<'_> {
                 State::Failed(message) => Some(message.clone()),
                 State::Finished(_) | State::Missing => None,
             });
-        Ok(columns.table().csv()?)
+        columns.table()
     }
 
-    /// The means over seeds as CSV, one row per combination of settings: half the 95 % confidence intervals and the
-    /// numbers of values.
-    ///
-    /// # Errors
-    /// The table cannot be written.
-    pub fn summary_csv(&self) -> Result<Vec<u8>, LabError> {
+    /// The means over seeds for programs, one row per combination of settings: half the 95 % confidence intervals and
+    /// the numbers of values.
+    pub fn summary_table(&self) -> Table {
         let rows = self.combinations();
         let mut columns = combined(&rows, &self.study.axes, plain);
         for (k, name) in self.numbers().iter().enumerate() {
@@ -97,11 +140,11 @@ impl Gathered<'_> {
                 .spread(name, 3, ["_mean", "_ci95"], |row| confident(row, k))
                 .column(&format!("{name}_n"), count);
         }
-        Ok(columns.table().csv()?)
+        columns.table()
     }
 
-    /// The same for a terminal: mean ± half the confidence interval.
-    pub fn text(&self) -> String {
+    /// The same for readers: mean ± half the confidence interval, and what this means.
+    fn means_table(&self) -> (Table, String) {
         let rows = self.combinations();
         let mut columns = combined(&rows, &self.study.short_axes(), short);
         let mut about =
@@ -118,7 +161,7 @@ impl Gathered<'_> {
             });
             about = format!("{}{LACKING}", about.trim_end_matches(LACKING));
         }
-        format!("{}\n{about}\n", columns.table().text())
+        (columns.table(), about)
     }
 
     /// The cells of a shard with their states, for a terminal.

@@ -1,6 +1,6 @@
 //! Documents as PDF, on A4. All lengths are in points.
 
-use super::{Block, Document, print};
+use super::{Block, Document, Figure, Piece, pieces, print, unmarked};
 use crate::colors::Rgb;
 use crate::html::PROGRAM;
 use crate::plot::{BLACK, GRAY, LINE, Pages, PlotError, Print, Sheet, text_lines, text_width};
@@ -43,18 +43,36 @@ impl Document {
         writer.lines(&self.title, TITLE, HEAD)?;
         writer.lines(&self.subtitle, CAPTION, GRAY)?;
         for (k, block) in self.blocks.iter().enumerate() {
+            if block.is_empty() {
+                continue;
+            }
             writer.y += GAP;
-            if let (Block::Heading(_), Some(Block::Figure(sheet, caption))) =
+            if let (Block::Heading(_), Some(Block::Figure(figure))) =
                 (block, self.blocks.get(k + 1))
             {
-                let (_, size) = fitted(sheet);
-                let below = caption_height(caption) + 2.0 * GAP + HEADING * LINE * 1.1;
+                let (_, size) = fitted(&figure.sheet);
+                let below = caption_height(&figure.caption) + 2.0 * GAP + HEADING * LINE * 1.1;
                 writer.make_room(size[1] + below + GAP);
             }
             writer.block(block)?;
         }
         writer.feet()?;
         writer.pages.finish()
+    }
+}
+
+/// The lines of a table's cell.
+struct Cell {
+    lines: Vec<String>,
+    is_bold: bool,
+}
+
+impl Cell {
+    fn new(text: &str, width: f64) -> Self {
+        Self {
+            lines: text_lines(&unmarked(text), CELL, width),
+            is_bold: matches!(pieces(text)[..], [Piece::Bold(_)]),
+        }
     }
 }
 
@@ -67,24 +85,27 @@ struct Writer {
 impl Writer {
     fn block(&mut self, block: &Block) -> Done {
         match block {
-            Block::Heading(text) => {
+            Block::Part(_, text) | Block::Heading(text) => {
                 self.y += GAP;
                 self.make_room(AFTER_HEADING);
                 self.lines(text, HEADING, HEAD)
             }
-            Block::Text(text) => self.lines(text, TEXT, BLACK),
+            Block::Text(text) => {
+                let mut lines = text.lines();
+                lines.try_for_each(|line| self.lines(line, TEXT, BLACK))
+            }
             Block::Code(lines) => {
                 let mut lines = lines.iter();
                 lines.try_for_each(|line| self.lines(line, CAPTION, HEAD))
             }
             Block::List(items) => items.iter().try_for_each(|item| self.item(item)),
             Block::Table(table, caption) => {
-                self.table(table)?;
-                self.caption(caption)
+                self.caption(caption)?;
+                self.table(table)
             }
-            Block::Figure(sheet, caption) => {
-                self.figure(sheet, caption)?;
-                self.caption(caption)
+            Block::Figure(figure) => {
+                self.figure(figure)?;
+                self.caption(&figure.caption)
             }
         }
     }
@@ -103,8 +124,7 @@ impl Writer {
 
     /// A text that begins `aside` from the left.
     fn beside(&mut self, text: &str, (size, color): (f64, Rgb), aside: f64) -> Done {
-        // Names of commands and settings are marked for HTML.
-        for line in text_lines(&text.replace('`', ""), size, WIDTH - aside) {
+        for line in text_lines(&unmarked(text), size, WIDTH - aside) {
             self.make_room(size * LINE);
             self.pages
                 .text(&line, [LEFT + aside, self.y], (size, color))?;
@@ -127,11 +147,12 @@ impl Writer {
         self.lines(text, CAPTION, GRAY)
     }
 
-    fn figure(&mut self, sheet: &Sheet, caption: &str) -> Done {
-        let (print, size) = fitted(sheet);
-        self.make_room(size[1] + caption_height(caption));
+    fn figure(&mut self, figure: &Figure) -> Done {
+        let (print, size) = fitted(&figure.sheet);
+        self.make_room(size[1] + caption_height(&figure.caption));
         let aside = 0.5 * (WIDTH - size[0]).max(0.0);
-        self.pages.sheet(sheet, &print, [LEFT + aside, self.y])?;
+        let at = [LEFT + aside, self.y];
+        self.pages.sheet(&figure.sheet, &print, at)?;
         self.y += size[1];
         Ok(())
     }
@@ -141,10 +162,11 @@ impl Writer {
         let widths = widths(&rows);
         let wrapped = rows.iter().map(|row| {
             let cells = row.iter().zip(&widths);
-            let cells = cells.map(|(cell, width)| text_lines(&cell.replace('`', ""), CELL, *width));
-            cells.collect::<Vec<_>>()
+            cells
+                .map(|(cell, width)| Cell::new(cell, *width))
+                .collect::<Vec<_>>()
         });
-        let wrapped: Vec<Vec<Vec<String>>> = wrapped.collect();
+        let wrapped: Vec<Vec<Cell>> = wrapped.collect();
         let Some((head, rows)) = wrapped.split_first() else {
             return Ok(());
         };
@@ -161,23 +183,27 @@ impl Writer {
         Ok(())
     }
 
-    fn head(&mut self, row: &[Vec<String>], table: &Table, widths: &[f64]) -> Done {
+    fn head(&mut self, row: &[Cell], table: &Table, widths: &[f64]) -> Done {
         let whole: f64 = widths.iter().map(|width| width + APART).sum();
         let size = [whole - APART, height(row)];
         self.pages.area([LEFT, self.y], size, SHADE)?;
         self.row(row, table, widths)
     }
 
-    fn row(&mut self, row: &[Vec<String>], table: &Table, widths: &[f64]) -> Done {
+    fn row(&mut self, row: &[Cell], table: &Table, widths: &[f64]) -> Done {
         let mut x = LEFT;
-        for (k, (lines, width)) in row.iter().zip(widths).enumerate() {
-            for (line, text) in lines.iter().enumerate() {
+        for (k, (cell, width)) in row.iter().zip(widths).enumerate() {
+            for (line, text) in cell.lines.iter().enumerate() {
                 let aside = match table.has_numbers(k) {
                     true => width - text_width(text, CELL),
                     false => 0.0,
                 };
                 let y = self.y + 0.5 * ROW + line as f64 * CELL * LINE;
-                self.pages.text(text, [x + aside, y], (CELL, BLACK))?;
+                let at = [x + aside, y];
+                match cell.is_bold {
+                    true => self.pages.bold(text, at, (CELL, BLACK))?,
+                    false => self.pages.text(text, at, (CELL, BLACK))?,
+                }
             }
             x += width + APART;
         }
@@ -222,8 +248,9 @@ fn caption_height(caption: &str) -> f64 {
     text_lines(caption, CAPTION, WIDTH).len() as f64 * CAPTION * LINE * 1.2
 }
 
-fn height(row: &[Vec<String>]) -> f64 {
-    let most = row.iter().map(Vec::len).max().unwrap_or(0).max(1);
+fn height(row: &[Cell]) -> f64 {
+    let most = row.iter().map(|cell| cell.lines.len()).max();
+    let most = most.unwrap_or(0).max(1);
     most as f64 * CELL * LINE + ROW
 }
 
@@ -235,7 +262,7 @@ fn widths(rows: &[Vec<String>]) -> Vec<f64> {
         let of = |k: usize| rows.iter().map(|row| width(&row[k])).fold(0.0, f64::max);
         (0..columns).map(of).collect()
     };
-    let text = |text: &str| text_width(text, CELL);
+    let text = |text: &str| text_width(&unmarked(text), CELL);
     let wanted = most(&text);
     let least = most(&|cell: &str| cell.split(' ').map(text).fold(0.0, f64::max));
     let room = WIDTH - APART * (columns.max(1) - 1) as f64;

@@ -1,6 +1,6 @@
 //! Documents as HTML.
 
-use super::{Block, Document, print};
+use super::{Block, Document, Piece, pieces, print};
 use crate::html::{END, Head, PROGRAM, escape, picture};
 use crate::plot::PlotError;
 
@@ -27,27 +27,33 @@ impl Document {
         let (title, subtitle) = (escape(&self.title), escape(&self.subtitle));
         let mut text = head.text();
         text += &format!("<main>\n<h1>{title}</h1>\n<p class=\"about\">{subtitle}</p>\n");
-        for block in &self.blocks {
-            text += &shown(block)?;
+        let has_parts = self
+            .blocks
+            .iter()
+            .any(|block| matches!(block, Block::Part(..)));
+        for block in self.blocks.iter().filter(|block| !block.is_empty()) {
+            text += &shown(block, if has_parts { 3 } else { 2 })?;
         }
         text += &format!("<p class=\"about\">{PROGRAM}</p>\n</main>\n{END}");
         Ok(text)
     }
 }
 
-/// A text in which words between backticks are code.
+/// A text with its marked pieces.
 fn marked(text: &str) -> String {
-    let parts = text.split('`').enumerate();
-    let parts = parts.map(|(k, part)| match k % 2 {
-        0 => escape(part),
-        _ => format!("<code>{}</code>", escape(part)),
+    let pieces = pieces(text).into_iter().map(|piece| match piece {
+        Piece::Plain(text) => escape(text).replace('\n', "<br>\n"),
+        Piece::Code(text) => format!("<code>{}</code>", escape(text)),
+        Piece::Bold(text) => format!("<b>{}</b>", escape(text)),
     });
-    parts.collect()
+    pieces.collect()
 }
 
-fn shown(block: &Block) -> Result<String, PlotError> {
+/// A block; its headings are of this level.
+fn shown(block: &Block, level: u8) -> Result<String, PlotError> {
     Ok(match block {
-        Block::Heading(text) => format!("<h2>{}</h2>\n", escape(text)),
+        Block::Part(_, text) => format!("<h2>{}</h2>\n", escape(text)),
+        Block::Heading(text) => format!("<h{level}>{}</h{level}>\n", escape(text)),
         Block::Text(text) => format!("<p>{}</p>\n", marked(text)),
         Block::Code(lines) => format!("<pre>{}</pre>\n", escape(&lines.join("\n"))),
         Block::List(items) => {
@@ -61,15 +67,13 @@ fn shown(block: &Block) -> Result<String, PlotError> {
                 "" => String::new(),
                 caption => format!("<p class=\"about\">{}</p>\n", marked(caption)),
             };
-            format!("{}{caption}", table.html())
+            format!("{}{caption}", table.html_of(marked))
         }
-        Block::Figure(sheet, caption) => {
-            let svg = sheet.svg(&print())?;
-            let image = picture(&String::from_utf8_lossy(&svg), caption);
-            format!(
-                "<figure>\n{image}<figcaption>{}</figcaption>\n</figure>\n",
-                escape(caption)
-            )
+        Block::Figure(figure) => {
+            let svg = figure.sheet.svg(&print())?;
+            let image = picture(&String::from_utf8_lossy(&svg), &figure.caption);
+            let caption = escape(&figure.caption);
+            format!("<figure>\n{image}<figcaption>{caption}</figcaption>\n</figure>\n")
         }
     })
 }

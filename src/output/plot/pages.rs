@@ -3,7 +3,7 @@
 
 use std::convert::Infallible;
 
-use plotters::style::{Color, RGBColor};
+use plotters::style::{Color, FontStyle, RGBColor, TextStyle};
 use plotters_backend::{DrawingBackend, DrawingErrorKind};
 
 use super::ink::Ink;
@@ -51,10 +51,24 @@ impl Pages {
     /// It cannot be drawn.
     pub fn text(&mut self, text: &str, at: [f64; 2], (size, color): (f64, Rgb)) -> Drawn {
         let style = self.ink.text(size, color, [1, -1]);
+        self.draw(text, at, &style)
+    }
+
+    /// A line of bold text.
+    ///
+    /// # Errors
+    /// It cannot be drawn.
+    pub fn bold(&mut self, text: &str, at: [f64; 2], (size, color): (f64, Rgb)) -> Drawn {
+        let mut style = self.ink.text(size, color, [1, -1]);
+        style.font = style.font.style(FontStyle::Bold);
+        self.draw(text, at, &style)
+    }
+
+    fn draw(&mut self, text: &str, at: [f64; 2], style: &TextStyle) -> Drawn {
         let at = self.ink.at(at);
         self.pdf
             .backend()
-            .draw_text(text, &style, at)
+            .draw_text(text, style, at)
             .map_err(drawing)
     }
 

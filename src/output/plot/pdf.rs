@@ -8,10 +8,11 @@ use std::convert::Infallible;
 use ab_glyph::{Font, GlyphId};
 use image::{RgbImage, imageops};
 use miniz_oxide::deflate::compress_to_vec_zlib;
-use pdf_writer::types::{LineCapStyle, LineJoinStyle};
+use pdf_writer::types::{LineCapStyle, LineJoinStyle, TextRenderingMode};
 use pdf_writer::{Content, Filter, Finish, Name, Rect, Ref, Str};
 use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind,
+    FontStyle,
 };
 use subsetter::GlyphRemapper;
 
@@ -27,6 +28,8 @@ const FONT_NAME: Name = Name(b"F");
 const LEVEL: u8 = 8;
 /// The control points of a quarter of a circle.
 const ARC: f32 = 0.552_285;
+/// The width of the rim of bold letters, ems.
+const RIM: f32 = 0.03;
 
 /// A PDF while it is drawn.
 pub struct Pdf {
@@ -340,12 +343,23 @@ impl DrawingBackend for Backend<'_> {
         let [right, up] = [[1.0, 0.0], [0.0, -1.0]].map(|way| font::turned(&transform, way));
         let matrix = [right[0], right[1], up[0], up[1], x, y].map(|number| number as f32);
         self.0.fill_color(style.color());
+        let is_bold = matches!(style.style(), FontStyle::Bold);
+        let [r, g, b] = parts(style.color());
         let content = self.0.content();
+        if is_bold {
+            // The font has no bold face: letters get a rim.
+            content.save_state().set_stroke_rgb(r, g, b);
+            content.set_line_width(RIM * em as f32);
+            content.set_text_rendering_mode(TextRenderingMode::FillStroke);
+        }
         content.begin_text().set_font(FONT_NAME, em as f32);
         content
             .set_text_matrix(matrix)
             .show(Str(&numbers))
             .end_text();
+        if is_bold {
+            content.restore_state();
+        }
         Ok(())
     }
 

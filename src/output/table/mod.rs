@@ -158,6 +158,11 @@ impl Table {
 
     /// As HTML, numbers right-aligned.
     pub fn html(&self) -> String {
+        self.html_of(escape)
+    }
+
+    /// The same, with `html` of the text of each cell.
+    pub fn html_of(&self, html: impl Fn(&str) -> String) -> String {
         let mut rows = self.lines().into_iter().map(|cells| {
             let cells = cells.iter().enumerate().map(|(k, cell)| {
                 let class = if self.has_numbers(k) {
@@ -165,7 +170,7 @@ impl Table {
                 } else {
                     ""
                 };
-                (class, escape(cell))
+                (class, html(cell))
             });
             cells.collect::<Vec<_>>()
         });

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::super::product::{Needs, Product, save};
+use super::super::product::{Needs, Product};
 use crate::gallery::{distinct, in_cell, map};
 use crate::sweep::{Combination, Gathered};
 use analysis::statistics::{Estimate, Range};
@@ -16,10 +16,12 @@ pub const PRODUCT: Product = Product {
     in_all: false,
     studies: &["wave_grid"],
     needs: Needs::All,
-    write: |studies, store| {
+    tables: &["study"],
+    has_figure: true,
+    find: |product, studies| {
         let study = &studies[0];
-        store.write("study.csv", &study.summary_csv()?)?;
-        save(&sheet(study), store, "study")
+        let findings = product.figure(sheet(study));
+        Ok(findings.with_table(product.name, &study.summary_table())?)
     },
 };
 

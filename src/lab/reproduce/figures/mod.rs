@@ -124,6 +124,8 @@ pub const fn figure<const NUMBER: usize>() -> Product {
             [] => Needs::All,
             labels => Needs::Labeled(labels),
         },
-        write: |studies, store| SNAPSHOTS[NUMBER - 5].write(studies, store),
+        tables: &[],
+        has_figure: true,
+        find: |product, studies| Ok(product.figure(SNAPSHOTS[NUMBER - 5].sheet(studies)?)),
     }
 }

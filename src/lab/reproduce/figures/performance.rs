@@ -1,6 +1,6 @@
 //! Fig. 11: frame time per task against the number of agents.
 
-use super::super::product::{Needs, Product, save};
+use super::super::product::{Needs, Product};
 use crate::error::LabError;
 use engine::simulation::Stage;
 use output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Sheet, Style, line_color};
@@ -14,15 +14,17 @@ pub const PRODUCT: Product = Product {
     in_all: true,
     studies: &["fig11"],
     needs: Needs::Alone,
-    write: |studies, store| {
+    tables: &["fig11"],
+    has_figure: true,
+    find: |product, studies| {
         let cells = studies.iter().flat_map(|study| &study.states);
         let times = cells.map(|state| state.result()?.summary.data(FrameTime::NAME));
         let times: Option<Vec<StageTimes>> = times.collect();
         let times = times.ok_or_else(|| LabError::missing("fig11", FrameTime::NAME))?;
-        store.write("fig11.csv", &csv(&times)?)?;
         let threads = times.first().map_or(0, |time| time.threads);
         let machine = format!("{threads} threads of this machine");
-        save(&sheet(&times, &machine), store, "fig11")
+        let findings = product.figure(sheet(&times, &machine));
+        Ok(findings.with_table(product.name, &table(&times))?)
     },
 };
 
@@ -74,7 +76,7 @@ fn sheet(times: &[StageTimes], machine: &str) -> Sheet {
 }
 
 /// One line per number of agents, with the milliseconds per frame of every stage.
-fn csv(times: &[StageTimes]) -> Result<Vec<u8>, LabError> {
+fn table(times: &[StageTimes]) -> Table {
     let mut table = Table::of(times)
         .column("agents", |time| time.agents)
         .column("threads", |time| time.threads)
@@ -83,5 +85,5 @@ fn csv(times: &[StageTimes]) -> Result<Vec<u8>, LabError> {
         let name = format!("{}_ms", stage.name());
         table = table.column(&name, |time| time.of_stage(stage).unwrap_or(0.0));
     }
-    Ok(table.table().csv()?)
+    table.table()
 }

@@ -2,12 +2,10 @@
 
 use std::sync::LazyLock;
 
-use super::super::product::save;
 use crate::error::LabError;
 use crate::sweep::Gathered;
 use output::colors::{self, ColorMap};
 use output::plot::{Axis, ColorBar, Disc, GRAY, Mark, Panel, Sheet, Style};
-use runs::store::Store;
 use scenario::measurements::Snapshot;
 
 /// Inferno up to 1 m/s: the push itself reaches 0.9 m/s.
@@ -87,8 +85,8 @@ pub(super) const ALL: Snapshots = Snapshots {
 };
 
 impl Snapshots {
-    /// Draws the runs of the study.
-    pub fn write(&self, studies: &[Gathered], store: &Store) -> Result<String, LabError> {
+    /// The runs of the study.
+    pub fn sheet(&self, studies: &[Gathered]) -> Result<Sheet, LabError> {
         let study = &studies[0];
         let mut labels = self.labels.to_vec();
         if labels.is_empty() {
@@ -125,13 +123,12 @@ impl Snapshots {
         }
         let height = self.width * (max[1] - min[1]) / (max[0] - min[0]);
         let map = (self.coloring.map)();
-        let sheet = Sheet {
+        Ok(Sheet {
             shared_axes: true,
             row_titles,
             bar: Some(ColorBar::new(self.coloring.label, map)),
             ..Sheet::new(self.title, self.columns, [self.width, height], panels)
-        };
-        save(&sheet, store, self.name)
+        })
     }
 
     fn panel(&self, title: String, snapshot: &Snapshot, walls: &[Vec<[f64; 2]>]) -> Panel {

@@ -1,6 +1,6 @@
 //! An addition to Fig. 7: the wave over space and time for several k, and its speed against linear theory.
 
-use super::super::product::{Needs, Product, save};
+use super::super::product::{Needs, Product};
 use crate::error::LabError;
 use crate::gallery::points;
 use crate::sweep::Gathered;
@@ -26,13 +26,15 @@ pub const PRODUCT: Product = Product {
     in_all: true,
     studies: &["shockwave"],
     needs: Needs::Labeled(&LABELS),
-    write: |studies, store| {
+    tables: &["waves"],
+    has_figure: true,
+    find: |product, studies| {
         let study = &studies[0];
         let runs = LABELS.into_iter().zip(GAS_CONSTANTS);
         let runs = runs.map(|(label, k)| Speed::of(study, label, k));
         let runs: Vec<Speed> = runs.collect::<Result<_, _>>()?;
-        store.write("waves.csv", &csv(&runs)?)?;
-        save(&sheet(&runs), store, "waves")
+        let findings = product.figure(sheet(&runs));
+        Ok(findings.with_table(product.name, &table(&runs))?)
     },
 };
 
@@ -152,7 +154,7 @@ const ARRIVING: Of = |wave| Some(wave.arriving.speed);
 const RETURNING: Of = |wave| Some(wave.returning.as_ref()?.speed);
 
 /// One line per k: the measured wave, and the speeds of linear theory.
-fn csv(speeds: &[Speed]) -> Result<Vec<u8>, LabError> {
+fn table(speeds: &[Speed]) -> Table {
     let estimates: [(&str, [&str; 2], Of); 4] = [
         ("arriving", ["_m_per_s", "_error"], ARRIVING),
         ("returning", ["_m_per_s", "_error"], RETURNING),
@@ -167,12 +169,12 @@ fn csv(speeds: &[Speed]) -> Result<Vec<u8>, LabError> {
             speed.seen.wave.as_ref().and_then(of)
         });
     }
-    let table = table
+    table
         .column("contacts_per_agent", |speed| speed.contacts)
         .column("fluid_m_per_s", |speed| speed.fluid)
         .column("with_contacts_m_per_s", |speed| speed.with_contacts)
-        .column("all_touching_m_per_s", |speed| speed.all_touching);
-    Ok(table.table().csv()?)
+        .column("all_touching_m_per_s", |speed| speed.all_touching)
+        .table()
 }
 
 fn against_gas_constant(speeds: &[Speed]) -> Panel {

@@ -1,12 +1,12 @@
 //! Oscillations of dense crowds: spectra of locally averaged velocities by density.
 
-use super::super::product::{Needs, Product};
-use super::{first, grouped, mean, profile, write};
-use crate::gallery::{BAND, with_legend};
-use crate::sweep::Combination;
-use analysis::oscillation::Oscillation;
-use output::plot::{Axis, Mark, Panel, Sheet, Style};
-use output::table::Table;
+use super::{first, found, grouped, mean, profile};
+use sandbox::analysis::oscillation::Oscillation;
+use sandbox::lab::gallery::{BAND, with_legend};
+use sandbox::lab::reproduce::{Needs, Product};
+use sandbox::lab::sweep::Combination;
+use sandbox::output::plot::{Axis, Mark, Panel, Sheet, Style};
+use sandbox::output::table::Table;
 
 /// The measured angular frequency of crowds above 4 P/m² (Gu et al. 2025), rad/s.
 const MEASURED: [f64; 2] = [0.30, 0.40];
@@ -16,6 +16,9 @@ const AXES: [[f64; 2]; 2] = [[0.05, 8.0], [1e-10, 0.1]];
 /// The most panels side by side.
 const IN_A_ROW: usize = 3;
 
+/// The tables of its study.
+const TABLES: [&str; 2] = ["oscillations", "oscillations-summary"];
+
 /// The table and the spectra.
 pub const PRODUCT: Product = Product {
     name: "oscillations",
@@ -23,7 +26,9 @@ pub const PRODUCT: Product = Product {
     in_all: false,
     studies: &["oscillations"],
     needs: Needs::All,
-    write: |studies, store| write(studies, store, table, sheet),
+    tables: &TABLES,
+    has_figure: true,
+    find: |product, studies| found(product, studies, table, sheet),
 };
 
 fn table(rows: &[Combination]) -> Table {

@@ -1,15 +1,17 @@
 //! People on legs in closed squares: from which density on they turn together, how fast, and how far apart.
 
-use super::super::product::{Needs, Product, save};
-use super::{grouped, mean};
-use crate::error::LabError;
-use crate::gallery::{BAND, curve, distinct, in_cell, map, points};
-use crate::sweep::{Combination, Gathered};
-use analysis::statistics::Estimate;
-use output::colors::ColorMap;
-use output::plot::{Axis, BLACK, ColorBar, Corner, Mark, Panel, Point, Sheet, Style, line_color};
-use output::table::{Cell, Table};
-use runs::store::Store;
+use super::{grouped, mean, of_studies};
+use sandbox::analysis::statistics::Estimate;
+use sandbox::lab::error::LabError;
+use sandbox::lab::gallery::{BAND, curve, distinct, in_cell, map, points};
+use sandbox::lab::reproduce::{Needs, Product};
+use sandbox::lab::sweep::{Combination, Gathered};
+use sandbox::output::colors::ColorMap;
+use sandbox::output::document::{Block, Findings};
+use sandbox::output::plot::{
+    Axis, BLACK, ColorBar, Corner, Mark, Panel, Point, Sheet, Style, line_color,
+};
+use sandbox::output::table::{Cell, Table};
 
 /// What Gu et al. (2025) filmed on 50 m × 20 m: the density from which on people turn, P/m², the angular frequency with
 /// its uncertainty, rad/s, and a distance over which they turn together, meters.
@@ -39,7 +41,16 @@ pub const PRODUCT: Product = Product {
     in_all: false,
     studies: &["sway_small", "sway_large", "sway"],
     needs: Needs::All,
-    write,
+    tables: &[
+        "sway_small",
+        "sway_small-summary",
+        "sway_large",
+        "sway_large-summary",
+        "sway",
+        "sway-summary",
+    ],
+    has_figure: true,
+    find,
 };
 
 /// The table of other parameters, and of people on legs with fluid forces.
@@ -49,23 +60,22 @@ pub const RATES: Product = Product {
     in_all: false,
     studies: &["sway_rates"],
     needs: Needs::All,
-    write: write_rates,
+    tables: &["sway_rates", "sway_rates-summary"],
+    has_figure: false,
+    find: |product, studies| {
+        let table = cells(&studies[0].combinations());
+        of_studies(product, studies, vec![Block::table(table)])
+    },
 };
 
-fn write_rates(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
-    let study = &studies[0];
-    study.write(store, None)?;
-    Ok(cells(&study.combinations()).markdown())
-}
-
-fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
+fn find(product: &Product, studies: &[Gathered]) -> Result<Findings, LabError> {
     let rows: Vec<Combination> = studies.iter().flat_map(Gathered::combinations).collect();
-    for study in studies {
-        study.write(store, None)?;
-    }
-    save(&sheet(&rows), store, PRODUCT.name)?;
-    let tables = [sizes(&rows), cells(&rows)].map(|table| table.markdown());
-    Ok(tables.join("\n"))
+    let blocks = vec![
+        Block::table(sizes(&rows)),
+        Block::table(cells(&rows)),
+        Block::figure(product.name, sheet(&rows), product.about),
+    ];
+    of_studies(product, studies, blocks)
 }
 
 /// Width and height of the square, meters.

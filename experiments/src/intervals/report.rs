@@ -1,12 +1,15 @@
 //! Tables of how often intervals hold the value.
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::coverage::{CONFIDENCE, Coverage, Covered};
-use crate::error::LabError;
-use analysis::statistics::{Range, Share};
-use output::table::Table;
-use runs::store::Store;
+use sandbox::analysis::statistics::{Range, Share};
+use sandbox::lab::error::LabError;
+use sandbox::output::document::{Block, Document, Findings};
+use sandbox::output::table::Table;
+
+/// The name of the study of intervals, of its files, and of its table in documents.
+pub const COVERAGE: &str = "coverage";
 
 impl Coverage {
     /// The number of intervals that hold the value, of all.
@@ -15,17 +18,20 @@ impl Coverage {
         Share::of(held, self.rows.iter().map(|row| row.estimates).sum())
     }
 
-    /// As Markdown.
-    pub fn markdown(&self) -> String {
-        self.written(Table::markdown)
+    /// Everything for readers and programs.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn findings(&self) -> Result<Findings, LabError> {
+        let document = Document::of(
+            "How often intervals hold the value",
+            vec![Block::table(self.table()), Block::text(self.overview())],
+        );
+        let data = json!({ "confidence": CONFIDENCE, "pool_secs": self.secs, "rows": self.rows });
+        Ok(Findings::new(COVERAGE, document, data).with_table(COVERAGE, &self.table())?)
     }
 
-    /// For a terminal.
-    pub fn text(&self) -> String {
-        self.written(Table::text)
-    }
-
-    fn written(&self, table: fn(&Table) -> String) -> String {
+    fn overview(&self) -> String {
         let worst = self
             .rows
             .iter()
@@ -38,10 +44,9 @@ impl Coverage {
             Range::of(&ratios.collect::<Vec<_>>()).median
         };
         format!(
-            "{}\n{} % intervals hold the value in {} of all estimates; worst row {:.1} %. Median over the rows: {:.1} \
+            "{} % intervals hold the value in {} of all estimates; worst row {:.1} %. Median over the rows: {:.1} \
              times the runs and {:.1} times the time of an estimate for which spread and error of the step are known. \
-             The pools of {} runs at each step took {:.2} hours on one core.\n",
-            table(&self.table()),
+             The pools of {} runs at each step took {:.2} hours on one core.",
             100.0 * CONFIDENCE,
             self.total(),
             Range::of(&worst.collect::<Vec<_>>()).minimum,
@@ -81,20 +86,5 @@ impl Coverage {
             .fixed("by the pool [%]", 0, |row| 100.0 * row.predicted[1])
             .column("unfinished", |row| row.unfinished)
             .table()
-    }
-
-    /// Writes `coverage.md` and `coverage.json` into the store's folder.
-    ///
-    /// # Errors
-    /// A file cannot be written.
-    pub fn write(&self, store: &Store) -> Result<(), LabError> {
-        store.write("coverage.md", self.markdown().as_bytes())?;
-        store.write("coverage.json", format!("{:#}\n", self.json()).as_bytes())?;
-        Ok(())
-    }
-
-    /// All results as one object.
-    pub fn json(&self) -> Value {
-        json!({ "confidence": CONFIDENCE, "pool_secs": self.secs, "rows": self.rows })
     }
 }

@@ -7,19 +7,17 @@
 
 use serde::Serialize;
 
-use super::plan::{Goal, Hope, MOST_PREDICTED, Offer, first_round, further, pilot, predicted};
-use super::prior::Prior;
-use super::question::{Question, QuestionError};
-use super::run::Runs;
-use super::series::{Means, Series};
-use super::wanted::{Limits, Request, Sampling, Wanted};
-use crate::error::LabError;
-use crate::jobs::each;
-use analysis::statistics::{MeanStd, shuffled};
-use runs::case::Source;
-use runs::job::Listener;
-use runs::store::Store;
-use scenario::Setting;
+use sandbox::analysis::statistics::{MeanStd, shuffled};
+use sandbox::lab::error::LabError;
+use sandbox::lab::estimate::{
+    Goal, Hope, Limits, MOST_PREDICTED, Means, Offer, Prior, Question, QuestionError, Request,
+    Runs, Sampling, Series, Wanted, first_round, further, pilot, predicted,
+};
+use sandbox::lab::jobs::each;
+use sandbox::runs::case::Source;
+use sandbox::runs::job::Listener;
+use sandbox::runs::store::Store;
+use sandbox::scenario::Setting;
 
 /// The probability that intervals are made for.
 pub(super) const CONFIDENCE: f64 = 0.95;
@@ -101,7 +99,7 @@ pub struct Covered {
     /// The shares of estimates for which the number of runs that another estimate lets expect, or the whole pool, is
     /// within a factor of 1.5.
     pub predicted: [f64; 2],
-    /// The number of estimates that ended before the error asked for, for want of draws.
+    /// The number of estimates that ended before the error asked for because draws ran out.
     pub unfinished: usize,
 }
 

@@ -1,12 +1,12 @@
 //! All questions in one picture: people and model side by side.
 
-use super::super::product::{Needs, Product, save};
 use super::{oscillations, queue_pushes, start_waves, swaying};
-use crate::error::LabError;
-use crate::gallery::with_legend;
-use crate::sweep::Gathered;
-use output::plot::Sheet;
-use runs::store::Store;
+use sandbox::lab::error::LabError;
+use sandbox::lab::gallery::with_legend;
+use sandbox::lab::reproduce::{Needs, Product};
+use sandbox::lab::sweep::Gathered;
+use sandbox::output::document::Findings;
+use sandbox::output::plot::Sheet;
 
 /// The picture. Its panels are those of the single questions.
 pub const PRODUCT: Product = Product {
@@ -15,10 +15,12 @@ pub const PRODUCT: Product = Product {
     in_all: false,
     studies: &["queue_pushes", "start_waves", "oscillations", "sway"],
     needs: Needs::All,
-    write,
+    tables: &[],
+    has_figure: true,
+    find,
 };
 
-fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
+fn find(product: &Product, studies: &[Gathered]) -> Result<Findings, LabError> {
     let rows: Vec<_> = studies.iter().map(Gathered::combinations).collect();
     let fronts = [
         queue_pushes::strongest(&rows[0]),
@@ -28,9 +30,5 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
     let legs = swaying::frequencies(&rows[3]);
     let panels = fronts.into_iter().chain(spectra).chain([legs]).collect();
     let title = "Waves in crowds: what people did (black and gray) and what the model does";
-    save(
-        &Sheet::new(title, 2, [290.0, 220.0], panels),
-        store,
-        PRODUCT.name,
-    )
+    Ok(product.figure(Sheet::new(title, 2, [290.0, 220.0], panels)))
 }

@@ -9,35 +9,50 @@ mod swaying;
 mod phenomena;
 
 use serde::de::DeserializeOwned;
-use serde_json::Value;
+use serde_json::{Value, json};
 
-pub use oscillations::PRODUCT as OSCILLATIONS;
-pub use phenomena::PRODUCT as PHENOMENA;
-pub use queue_pushes::PRODUCT as QUEUE_PUSHES;
-pub use start_waves::PRODUCT as START_WAVES;
-pub use swaying::{PRODUCT as SWAYING, RATES as SWAYING_RATES};
+use sandbox::analysis::statistics::{Estimate, MeanStd};
+use sandbox::lab::error::LabError;
+use sandbox::lab::gallery::distinct;
+use sandbox::lab::reproduce::Product;
+use sandbox::lab::sweep::{Combination, Gathered};
+use sandbox::output::document::{Block, Findings};
+use sandbox::output::plot::Sheet;
+use sandbox::output::table::Table;
 
-use super::product::save;
-use crate::error::LabError;
-use crate::gallery::distinct;
-use crate::sweep::{Combination, Gathered};
-use analysis::statistics::{Estimate, MeanStd};
-use output::plot::Sheet;
-use output::table::Table;
-use runs::store::Store;
+/// All products.
+pub const PRODUCTS: [&Product; 6] = [
+    &oscillations::PRODUCT,
+    &swaying::PRODUCT,
+    &swaying::RATES,
+    &start_waves::PRODUCT,
+    &queue_pushes::PRODUCT,
+    &phenomena::PRODUCT,
+];
 
-/// Writes a table and a picture about the only study of a product, and returns the table.
-fn write(
+/// A table and a picture of the only study of a product.
+fn found(
+    product: &Product,
     studies: &[Gathered],
-    store: &Store,
     table: fn(&[Combination]) -> Table,
     sheet: fn(&[Combination]) -> Sheet,
-) -> Result<String, LabError> {
-    let study = &studies[0];
-    let (rows, name) = (study.combinations(), &study.study.name);
-    study.write(store, None)?;
-    save(&sheet(&rows), store, name)?;
-    Ok(table(&rows).markdown())
+) -> Result<Findings, LabError> {
+    let rows = studies[0].combinations();
+    let figure = Block::figure(product.name, sheet(&rows), product.about);
+    of_studies(product, studies, vec![Block::table(table(&rows)), figure])
+}
+
+/// Findings of all runs of these studies, with their tables.
+fn of_studies(
+    product: &Product,
+    studies: &[Gathered],
+    blocks: Vec<Block>,
+) -> Result<Findings, LabError> {
+    let data: Vec<Value> = studies.iter().map(Gathered::json).collect();
+    let findings = product.findings(blocks, json!(data));
+    studies
+        .iter()
+        .try_fold(findings, |findings, study| study.add_tables(findings))
 }
 
 /// The profile of a combination: its name, or its base and the parameters that distinguish it.

@@ -1,12 +1,12 @@
 //! The speed at which a start runs back through a waiting crowd.
 
-use super::super::product::{Needs, Product};
-use super::{first, front_speed, grouped, mean, profile, write};
-use crate::gallery::points;
-use crate::sweep::Combination;
-use output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
-use output::table::Table;
-use scenario::measurements::FrontData;
+use super::{first, found, front_speed, grouped, mean, profile};
+use sandbox::lab::gallery::points;
+use sandbox::lab::reproduce::{Needs, Product};
+use sandbox::lab::sweep::Combination;
+use sandbox::output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
+use sandbox::output::table::Table;
+use sandbox::scenario::measurements::FrontData;
 
 /// The length that people wait on, meters.
 const LENGTH: f64 = 30.0;
@@ -15,6 +15,9 @@ const RELEASED: f64 = 5.0;
 /// The speed of velocity waves in start corrals of marathons (Bain and Bartolo 2019), m/s.
 const MEASURED: f64 = 1.2;
 
+/// The tables of its study.
+const TABLES: [&str; 2] = ["start_waves", "start_waves-summary"];
+
 /// The table, the start times and the speeds.
 pub const PRODUCT: Product = Product {
     name: "start-waves",
@@ -22,7 +25,9 @@ pub const PRODUCT: Product = Product {
     in_all: false,
     studies: &["start_waves"],
     needs: Needs::All,
-    write: |studies, store| write(studies, store, table, sheet),
+    tables: &TABLES,
+    has_figure: true,
+    find: |product, studies| found(product, studies, table, sheet),
 };
 
 /// The distance between people along the corridor, meters.

@@ -1,14 +1,14 @@
 //! The speed and the reach of a push through a row of standing people.
 
-use super::super::product::{Needs, Product};
-use super::{first, front_speed, grouped, mean, profile, write};
-use crate::gallery::{curve, points};
-use crate::sweep::Combination;
-use analysis::sound::speed_of_fluid;
-use analysis::statistics::Estimate;
-use output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style};
-use output::table::Table;
-use scenario::measurements::FrontData;
+use super::{first, found, front_speed, grouped, mean, profile};
+use sandbox::analysis::sound::speed_of_fluid;
+use sandbox::analysis::statistics::Estimate;
+use sandbox::lab::gallery::{curve, points};
+use sandbox::lab::reproduce::{Needs, Product};
+use sandbox::lab::sweep::Combination;
+use sandbox::output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Point, Sheet, Style};
+use sandbox::output::table::Table;
+use sandbox::scenario::measurements::FrontData;
 
 /// k of the paper's profiles.
 const GAS_CONSTANT: f64 = 200.0;
@@ -31,6 +31,9 @@ const DISTANCES: [f64; 2] = [0.2, 1.1];
 /// The setting with the velocity of the last person in the row.
 const PUSH: &str = "agents.0.velocity";
 
+/// The tables of its study.
+const TABLES: [&str; 2] = ["queue_pushes", "queue_pushes-summary"];
+
 /// The table, and speed and reach by distance.
 pub const PRODUCT: Product = Product {
     name: "queue-pushes",
@@ -38,7 +41,9 @@ pub const PRODUCT: Product = Product {
     in_all: false,
     studies: &["queue_pushes"],
     needs: Needs::All,
-    write: |studies, store| write(studies, store, table, sheet),
+    tables: &TABLES,
+    has_figure: true,
+    find: |product, studies| found(product, studies, table, sheet),
 };
 
 /// The distance between neighbors at the start, meters.

@@ -1,14 +1,18 @@
 //! Spreads and errors of the step in many scenes, for the file that ships with the program.
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::coverage::{Pool, pooled, question};
-use super::prior::{Known, Prior};
-use crate::error::LabError;
-use analysis::round;
-use output::table::Table;
-use runs::job::Listener;
-use runs::store::Store;
+use sandbox::analysis::round;
+use sandbox::lab::error::LabError;
+use sandbox::lab::estimate::{Known, Prior};
+use sandbox::output::document::{Block, Document, Findings};
+use sandbox::output::table::Table;
+use sandbox::runs::job::Listener;
+use sandbox::runs::store::Store;
+
+/// The name of the study, of its files, and of its table in documents.
+pub const KNOWLEDGE: &str = "knowledge";
 
 /// The profiles.
 const PROFILES: [&str; 9] = [
@@ -67,41 +71,35 @@ pub fn knowledge(store: &Store, listener: &dyn Listener) -> Result<Knowledge, La
 }
 
 impl Knowledge {
-    /// As a file: one line per result.
-    pub fn file(&self) -> String {
-        let lines = self.known.iter();
-        let lines = lines.map(|known| Known {
-            spread: short(known.spread),
-            error: short(known.error),
-            error_std: known.error_std.map(short),
-            ..known.clone()
-        });
-        let lines: Vec<String> = lines
-            .filter_map(|known| serde_json::to_string(&known).ok())
-            .collect();
-        format!("[\n{}\n]\n", lines.join(",\n"))
-    }
-
-    /// As a table.
-    pub fn table(&self) -> Table {
-        Table::of(&self.known)
+    /// Everything for readers and programs. The data are the file that ships with the program.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn findings(&self) -> Result<Findings, LabError> {
+        let table = Table::of(&self.known)
             .column("scene", |known| known.scene.as_str())
             .column("profile", |known| known.profile.as_str())
             .column("result", |known| known.result.as_str())
             .fixed("spread [%]", 2, |known| 100.0 * known.spread)
             .fixed("error at 0.02 s [spreads]", 2, |known| known.error)
-            .table()
-    }
-
-    /// For a terminal.
-    pub fn text(&self) -> String {
+            .table();
         let hours = round::brief(self.secs / 3600.0);
-        format!("{}\n{hours} hours on one core.\n", self.table().text())
-    }
-
-    /// As one object.
-    pub fn json(&self) -> Value {
-        json!({ "known": self.known, "secs": self.secs })
+        let document = Document::of(
+            "What estimates know before their first run",
+            vec![
+                Block::table(table.clone()),
+                Block::Text(format!("{hours} hours on one core.")),
+            ],
+        );
+        let known = self.known.iter();
+        let known = known.map(|known| Known {
+            spread: short(known.spread),
+            error: short(known.error),
+            error_std: known.error_std.map(short),
+            ..known.clone()
+        });
+        let data = json!(known.collect::<Vec<_>>());
+        Ok(Findings::new(KNOWLEDGE, document, data).with_table(KNOWLEDGE, &table)?)
     }
 }
 
