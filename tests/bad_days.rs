@@ -328,7 +328,7 @@ fn finished_cases_are_kept_and_counted_when_a_result_cannot_be_written() {
         "--out",
         out,
     ];
-    let place = folder.path().join("accuracy.md");
+    let place = folder.path().join("accuracy.json");
     let cases = folder.path().join("cases");
     // A case that has begun has a lock there.
     let is_result = |file: &Path| file.extension().is_some_and(|kind| kind == "json");

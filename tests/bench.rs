@@ -208,7 +208,7 @@ fn results_are_replaced_only_with_force() {
     let file = Path::new(out).join("threads.json");
     let read = || serde_json::from_slice::<Value>(&std::fs::read(&file).unwrap()).unwrap();
     assert_eq!(read(), printed);
-    for extension in ["svg", "png"] {
+    for extension in ["md", "csv", "svg", "png"] {
         let picture = file.with_extension(extension);
         assert!(picture.exists(), "{extension}");
     }

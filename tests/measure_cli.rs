@@ -1,6 +1,6 @@
 //! `sandbox measure` on the command line.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 use std::process::Output;
@@ -71,7 +71,17 @@ fn a_corridor_is_measured_into_a_folder() {
     let output = measure(&arguments);
     let stderr = program::stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{stderr}");
-    assert_eq!(stderr, format!("note: results are in {out}\n"));
+    // Every file is named, and no other.
+    let start = format!("note: written to {out}: ");
+    let named = stderr
+        .lines()
+        .flat_map(|line| line.strip_prefix(&start).unwrap().split(", "));
+    let named: BTreeSet<String> = named.map(str::to_owned).collect();
+    let there = fs::read_dir(&out)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name());
+    let there: BTreeSet<String> = there.map(|name| name.into_string().unwrap()).collect();
+    assert_eq!(named, there);
     let report = program::json(&output);
     assert_eq!(
         (&report["people"], &report["rows"]),

@@ -22,6 +22,7 @@ mod estimate_failures;
 mod estimate_prior;
 mod estimate_program;
 mod estimate_table1;
+mod findings;
 mod from_runs;
 mod headlines;
 mod interrupts;

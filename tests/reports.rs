@@ -145,7 +145,7 @@ fn reports_and_curves_of_the_wrong_thing_are_refused() {
     refused(
         &["report", "evacuation", "--out", "report.txt"],
         2,
-        &["a report's name must end in .html or .pdf"],
+        &["the name must end in .html, .pdf, .md, .csv or .json"],
     );
     refused(
         &["report", "evacuation", "--results", "folder"],

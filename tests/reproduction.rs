@@ -208,7 +208,8 @@ fn figure_of_one_agent(name: &str) -> String {
         })
         .collect();
     job::run(&jobs, &store, None, &()).unwrap();
-    reproduce(&[product], 1, &store, &()).unwrap();
+    let found = reproduce(&[product], 1, &store, &()).unwrap();
+    found[0].write(folder.path()).unwrap();
     fs::read_to_string(folder.path().join(format!("{name}.svg"))).unwrap()
 }
 

@@ -58,7 +58,7 @@ fn settings_and_seeds_change_every_run_and_all_results_say_so() {
         assert!(
             fs::read_to_string(out.join("my_suite.md"))
                 .unwrap()
-                .starts_with(&first)
+                .contains(&format!("\n\n{first}"))
         );
         let csv = fs::read_to_string(out.join("my_suite.csv")).unwrap();
         let rows: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
@@ -191,7 +191,7 @@ fn results_replace_other_files_only_by_force_and_the_suite_never() {
     assert!(
         fs::read_to_string(folder.join("v/my_suite.md"))
             .unwrap()
-            .starts_with("Passed")
+            .starts_with("# Results of the suite my_suite\n\nPassed")
     );
     // Now the folder belongs to the suite.
     assert_eq!(said(folder, "validate my_suite.json --out v").0, Some(0));

@@ -106,7 +106,10 @@ fn scenes_with_data_are_compared_with_the_data_and_skipped_without() {
         fs::read_to_string(out.join("validation.md")).unwrap()
     };
     let none = report();
-    assert!(none.contains("Skipped, for want of data: 2."), "{none}");
+    assert!(
+        none.contains("Skipped because data are missing: 2."),
+        "{none}"
+    );
     assert!(
         none.contains("040_c_56_h-.txt, from doi:10.34735/ped.2018.1"),
         "{none}"
@@ -115,7 +118,10 @@ fn scenes_with_data_are_compared_with_the_data_and_skipped_without() {
 
     fs::write(data.join("040_c_56_h-.txt"), file_of_people()).unwrap();
     let some = report();
-    assert!(some.contains("Skipped, for want of data: 1."), "{some}");
+    assert!(
+        some.contains("Skipped because data are missing: 1."),
+        "{some}"
+    );
     // One person per second; each is 0.8 s in 0.64 m².
     for expected in ["flow [P/s] | 1 ± 6 %", "speed [m/s] | 1 ± 10 %"] {
         assert!(some.contains(expected), "{some}");
@@ -160,7 +166,10 @@ fn pushes_need_both_files_and_are_compared_with_them() {
     };
     fs::write(data.join("push_tue_15.csv"), file_of_a_row([0.8, 3.37])).unwrap();
     let alone = report();
-    assert!(alone.contains("Skipped, for want of data: 2."), "{alone}");
+    assert!(
+        alone.contains("Skipped because data are missing: 2."),
+        "{alone}"
+    );
     assert!(alone.contains("has no push_tue_15.txt"), "{alone}");
 
     fs::write(

@@ -8,7 +8,9 @@ use super::failure::Failure;
 use super::terminal::{talk, tell};
 use super::values::document;
 use output::document::{Findings, Names};
+use output::plot::PlotError;
 use runs::outputs::{Manner, Outputs};
+use runs::store::Store;
 
 /// Files with all results of a command.
 #[derive(Args)]
@@ -62,7 +64,12 @@ pub fn show(findings: &Findings, as_json: bool, folder: Option<&Path>) -> Result
     let (json, text) = (|| findings.data.clone(), || findings.document.text());
     let said = tell(as_json, json, text);
     if let Some(folder) = folder {
-        let paths = findings.write(folder)?;
+        let paths = findings.write(folder).map_err(|error| match error {
+            PlotError::Writing { path, reason } => {
+                Store::at(folder).unwritable(&path, &reason).into()
+            }
+            other => Failure::from(other),
+        })?;
         let names = listed(&paths, Some(folder));
         talk(&format!("note: written to {}: {names}", folder.display()));
     }

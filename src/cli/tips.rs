@@ -26,23 +26,21 @@ const COMMANDS: [(&str, &str); 10] = [
 ];
 
 /// Words for options, the option that the command must have, and what is typed here.
-const OPTIONS: [(&str, &str, &str); 13] = [
+const OPTIONS: [(&str, &str, &str); 11] = [
     ("--duration", "--until", "--until SECS"),
     ("--time", "--until", "--until SECS"),
     ("--end", "--until", "--until SECS"),
     ("--model", "--profile", "--profile NAME"),
     ("--output", "--trajectory", FILES),
     ("--out", "--trajectory", FILES),
-    ("-o", "--trajectory", FILES),
     ("--output", "--out", "--out FILE"),
-    ("-o", "--out", "--out FILE"),
     ("--save", "--out", "--out FILE"),
     ("--plan", "--geometry", "--geometry FILE"),
     ("--param", "--set", "--set KEY=VALUE"),
     ("settings", "--settings", "--settings"),
 ];
-const FILES: &str = "--save FILE for a recording (.rrd) or a page (.html), --trajectory FILE for positions; `sandbox \
-                     report` writes a report, `sandbox draw` a picture";
+const FILES: &str = "-o FILE for a report, --save FILE for a recording (.rrd) or a page (.html), --trajectory FILE for \
+                     positions; `sandbox draw` draws a picture";
 
 /// This many commands that have an option are named.
 const NAMED: usize = 4;

@@ -211,7 +211,7 @@ pub fn document() -> impl TypedValueParser<Value = PathBuf> {
         let mut known = ENDINGS.iter();
         match known.any(|known| extension.eq_ignore_ascii_case(known)) {
             true => Ok(path),
-            false => Err("the name must end in .html, .pdf, .md, .csv or .json"),
+            false => Err("the name must end in .html, .pdf, .md, .csv or .json; `sandbox draw` draws pictures"),
         }
     })
 }

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::error::LabError;
 use runs::error::StoreError;
+use runs::identity::Identity;
 use runs::job::{self, Job, Listener};
 use runs::parallel::side_by_side;
 use runs::store::Store;
@@ -28,21 +29,32 @@ pub fn each<T: Send + Sync>(
     Ok(results.filter_map(OnceLock::into_inner).collect())
 }
 
-/// Computes the jobs that are not in `store`, and returns all results in the order of the jobs.
+/// The results of jobs that finished, by what they are results of.
+#[derive(Clone, Copy)]
+pub struct Results<'a>(pub &'a Store);
+
+/// Computes the jobs that are not in `store`.
 ///
 /// # Errors
-/// Some jobs failed, or their results cannot be stored or read. Finished jobs stay stored.
-pub fn results(
+/// Some jobs failed, or their results cannot be stored. Finished jobs stay stored.
+pub fn results<'a>(
     jobs: &[Job],
-    store: &Store,
+    store: &'a Store,
     listener: &dyn Listener,
-) -> Result<Vec<Value>, LabError> {
+) -> Result<Results<'a>, LabError> {
     finished(&job::run(jobs, store, None, listener)?)?;
-    let result = |job: &Job| {
-        let result = store.result(&job.key).map_err(LabError::Data)?;
-        result.ok_or_else(|| LabError::missing(&job.name, "result"))
-    };
-    jobs.iter().map(result).collect()
+    Ok(Results(store))
+}
+
+impl Results<'_> {
+    /// The result with this identity; `name` is its job in messages.
+    ///
+    /// # Errors
+    /// It is missing, damaged, or has another type.
+    pub fn of<T: DeserializeOwned>(self, name: &str, key: &Identity) -> Result<T, LabError> {
+        let result = self.0.result(key).map_err(LabError::Data)?;
+        result.ok_or_else(|| LabError::missing(name, "result"))
+    }
 }
 
 /// Whether all jobs finished.

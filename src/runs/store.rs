@@ -223,7 +223,7 @@ impl Store {
     }
 
     /// The error that `path` cannot be written, with a count of the stored results.
-    fn unwritable(&self, path: &Path, error: &io::Error) -> StoreError {
+    pub fn unwritable(&self, path: &Path, error: &io::Error) -> StoreError {
         let cases = self.cases();
         let files = fs::read_dir(&cases).into_iter().flatten().flatten();
         let finished = files.filter(|file| has_extension(&file.path(), &[FINISHED]));

@@ -71,6 +71,11 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     let measured = measured?;
     results.finish()?;
     recording.finish()?;
+    let streamed = STREAMED.join(", ");
+    talk(&format!(
+        "note: written to {}: {streamed}",
+        folder.display()
+    ));
     report_oddities(&measured);
     let report = Report {
         tracks: &tracks,

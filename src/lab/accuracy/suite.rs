@@ -11,7 +11,7 @@ use super::trajectory::Trajectories;
 use super::trials::{Trial, few, reference, settings, trials};
 use super::{cost, statistics};
 use crate::error::LabError;
-use crate::jobs::{read, results};
+use crate::jobs::{Results, results};
 use crate::sweep::{Cell, Study};
 use analysis::statistics::Range;
 use runs::case::RunResult;
@@ -59,13 +59,9 @@ pub fn accuracy(plan: &Plan, store: &Store, listener: &dyn Listener) -> Result<R
     let tasks = plan.scenes.iter().map(|&scene| Task::new(scene, plan));
     let tasks = tasks.collect::<Result<Vec<Task>, _>>()?;
     let jobs: Vec<Vec<Job>> = tasks.iter().map(Task::jobs).collect();
-    let counts: Vec<usize> = jobs.iter().map(Vec::len).collect();
     let jobs: Vec<Job> = jobs.into_iter().flatten().collect();
-    let mut results = results(&jobs, store, listener)?.into_iter();
-    let found = tasks.iter().zip(counts).map(|(task, count)| {
-        let own: Vec<Value> = results.by_ref().take(count).collect();
-        task.finish(&own, listener)
-    });
+    let results = results(&jobs, store, listener)?;
+    let found = tasks.iter().map(|task| task.finish(results, listener));
     let found = found.collect::<Result<Vec<Found>, _>>()?;
     Ok(Report {
         scenes: found,
@@ -107,15 +103,17 @@ impl Task {
             let job = |cell: &'a Cell| cell.case.job(format!("{scene} {cell}"));
             return cells.map(job).collect();
         }
-        let name = format!("motion {scene}, {} points", trials.len());
-        let input = format!("{document} {trials:?} {quick}");
+        let (name, key) = self.motion();
         let work = move |_: Progress| Trajectories::of(document, trials, quick);
-        vec![Job::new(
-            name.clone(),
-            Identity::of(&name, input),
-            100.0,
-            work,
-        )]
+        vec![Job::new(name, key, 100.0, work)]
+    }
+
+    /// The name and the identity of the job of a scene of motion.
+    fn motion(&self) -> (String, Identity) {
+        let (document, trials, quick) = (&self.document, &self.trials, self.quick);
+        let name = format!("motion {}, {} points", self.scene.name, trials.len());
+        let key = Identity::of(&name, format!("{document} {trials:?} {quick}"));
+        (name, key)
     }
 
     /// The entries of the study whose runs statistics need.
@@ -131,9 +129,12 @@ impl Task {
     }
 
     /// Combines the results of the jobs, and measures the costs.
-    fn finish(&self, results: &[Value], listener: &dyn Listener) -> Result<Found, LabError> {
+    fn finish(&self, results: Results, listener: &dyn Listener) -> Result<Found, LabError> {
         let judged = match self.scene.kind {
-            Kind::Motion => read::<Trajectories>(&results[0])?.judge(),
+            Kind::Motion => {
+                let (name, key) = self.motion();
+                results.of::<Trajectories>(&name, &key)?.judge()
+            }
             Kind::Statistics => self.statistics(results)?,
         };
         let trials = self.trials.iter();
@@ -164,13 +165,17 @@ impl Task {
     }
 
     /// Compares the runs of all entries with those of the reference.
-    fn statistics(&self, results: &[Value]) -> Result<Judged, LabError> {
+    fn statistics(&self, results: Results) -> Result<Judged, LabError> {
         let seeds = self.study.seeds;
         let mut runs: BTreeMap<usize, Vec<Summary>> = BTreeMap::new();
-        for (entry, results) in self.entries().into_iter().zip(results.chunks(seeds)) {
-            let summary = |result| Ok(read::<RunResult>(result)?.summary);
-            let own: Result<_, LabError> = results.iter().map(summary).collect();
-            runs.insert(entry, own?);
+        for entry in self.entries() {
+            let cells = self.cells(entry).iter();
+            let own = cells.map(|cell| {
+                Ok(results
+                    .of::<RunResult>(&cell.to_string(), &cell.case.key)?
+                    .summary)
+            });
+            runs.insert(entry, own.collect::<Result<_, LabError>>()?);
         }
         let Some(reference) = self.reference else {
             return Ok(Judged::default());

@@ -7,7 +7,7 @@ use super::limit::Limit;
 use super::question::Question;
 use super::series::{Means, Reached};
 use crate::error::LabError;
-use crate::jobs::{finished, read};
+use crate::jobs::{Results, finished};
 use crate::sweep::plain;
 use runs::case::{Case, RunResult};
 use runs::error::RunError;
@@ -83,14 +83,14 @@ impl Timed {
             .map(|(case, (of, _))| case.job(format!("{}, seed {}", name(of), case.seed)))
             .collect();
         finished(&job::run(&jobs, store, question.memory(), listener)?)?;
+        let results = Results(store);
         let timed = PRESETS.iter().zip(cases.chunks(TIMED));
         let timed = timed.map(|(&preset, cases)| {
             let scenario = cases[0].scenario();
             let scenario = scenario.map_err(|error| invalid(error.into()))?;
             let secs = cases.iter().map(|case| {
-                let result = store.result(&case.key).map_err(LabError::Data)?;
-                let result = result.ok_or_else(|| LabError::missing(name(preset), "result"))?;
-                Ok(read::<RunResult>(&result)?.wall_secs)
+                let result: RunResult = results.of(&name(preset), &case.key)?;
+                Ok(result.wall_secs)
             });
             let secs: Vec<f64> = secs.collect::<Result<_, LabError>>()?;
             Ok(Self {

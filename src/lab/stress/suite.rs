@@ -1,13 +1,12 @@
 //! The whole suite.
 
-use serde_json::Value;
-
 use super::cell::Cell;
 use super::fit::fit;
 use super::map::Detail;
 use super::report::{Finished, Report};
+use super::rest::Rest;
 use crate::error::LabError;
-use crate::jobs::{read, results};
+use crate::jobs::{Results, results};
 use crate::sweep::{self, Study};
 use runs::job::Listener;
 use runs::store::Store;
@@ -29,37 +28,38 @@ pub fn stress(detail: &Detail, store: &Store, listener: &dyn Listener) -> Result
     let seeded = crowds.iter().map(|crowd| (crowd, 0));
     let seeded = seeded.chain(held_out.iter().map(|crowd| (crowd, OTHER_PEOPLE)));
     jobs.extend(seeded.map(|(&crowd, seed)| Cell::job(crowd, detail.bisections, seed)));
-    let results = &mut results(&jobs, store, listener)?.into_iter();
-    let hard = runs(hard.cells.iter().filter(|cell| wanted(cell)), results)?;
-    let jitter = runs(jitter.cells.iter(), results)?;
-    let mut points = |count| -> Result<Vec<Cell>, LabError> {
-        let points = results.take(count);
-        points.map(|point| read(&point)).collect()
+    let results = results(&jobs, store, listener)?;
+    let points = |crowds: &[Rest], seed| -> Result<Vec<Cell>, LabError> {
+        let point = |&crowd: &Rest| {
+            let job = Cell::job(crowd, detail.bisections, seed);
+            results.of(&job.name, &job.key)
+        };
+        crowds.iter().map(point).collect()
     };
-    let cells = points(crowds.len())?;
+    let cells = points(&crowds, 0)?;
     Ok(Report {
-        hard,
+        hard: runs(hard.cells.iter().filter(|cell| wanted(cell)), results)?,
         fitted: fit(&cells),
         cells,
-        held_out: points(held_out.len())?,
-        jitter,
+        held_out: points(held_out, OTHER_PEOPLE)?,
+        jitter: runs(jitter.cells.iter(), results)?,
     })
 }
 
-/// The runs of these cells, with the next results.
+/// The runs of these cells.
 fn runs<'a>(
     cells: impl Iterator<Item = &'a sweep::Cell>,
-    results: &mut impl Iterator<Item = Value>,
+    results: Results,
 ) -> Result<Vec<Finished>, LabError> {
-    let run = |(cell, result): (&sweep::Cell, Value)| {
+    let run = |cell: &sweep::Cell| {
         let label = cell.label().unwrap_or_default().to_owned();
         let scenario = cell.case.scenario();
         let scenario = scenario.map_err(|error| LabError::of(label.clone(), error))?;
         Ok(Finished {
             label,
             description: scenario.description,
-            result: read(&result)?,
+            result: results.of(&cell.to_string(), &cell.case.key)?,
         })
     };
-    cells.zip(results).map(run).collect()
+    cells.map(run).collect()
 }

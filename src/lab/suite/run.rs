@@ -12,7 +12,7 @@ use super::report::{Finding, Report, Skipped, THROUGH_WALLS};
 use super::{data, deviations, diagrams, pictures};
 use crate::error::LabError;
 use crate::gallery::distinct;
-use crate::jobs::{read, results};
+use crate::jobs::results;
 use crate::sweep::{Cell, Changes, Study, StudyError};
 use output::document::Names;
 use runs::case::RunResult;
@@ -151,10 +151,12 @@ impl<'a> Planned<'a> {
         let labels: BTreeSet<&str> = self.cases.iter().flat_map(|case| case.runs()).collect();
         let wanted = |cell: &&Cell| labels.contains(label(cell));
         let jobs = self.study.jobs(|cell| wanted(&cell));
-        let results = results(&jobs, store, listener)?.into_iter();
-        let results = results.map(|result| read::<RunResult>(&result));
-        let results: Vec<RunResult> = results.collect::<Result<_, _>>()?;
+        let results = results(&jobs, store, listener)?;
         let cells: Vec<&Cell> = self.study.cells.iter().filter(wanted).collect();
+        let of_cells = cells
+            .iter()
+            .map(|cell| results.of(&cell.to_string(), &cell.case.key));
+        let results: Vec<RunResult> = of_cells.collect::<Result<_, _>>()?;
         let mut measured = Vec::new();
         for run in self.data {
             if let Some(cell) = cells.iter().find(|cell| label(cell) == run) {

@@ -63,9 +63,9 @@ impl Names {
         }
     }
 
-    /// The names of the files in a folder: Markdown, JSON, the tables as CSV, and the figures.
+    /// The names of the files in a folder: JSON, Markdown, the tables as CSV, and the figures.
     pub fn in_folder(&self) -> Vec<String> {
-        let whole = ["md", "json"].map(|end| format!("{}.{end}", self.name));
+        let whole = ["json", "md"].map(|end| format!("{}.{end}", self.name));
         let tables = self.tables.iter().map(|table| format!("{table}.csv"));
         let figures = self.figures.iter();
         let figures = figures.flat_map(|figure| {
@@ -178,8 +178,8 @@ impl Findings {
             written.push(path);
             Ok::<(), PlotError>(())
         };
-        write(file(&self.name, "md"), &markdown)?;
         write(file(&self.name, "json"), &self.json())?;
+        write(file(&self.name, "md"), &markdown)?;
         for (name, bytes) in &self.tables {
             write(file(name, "csv"), bytes)?;
         }

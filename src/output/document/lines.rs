@@ -89,7 +89,7 @@ impl Markup<'_> {
                 Self::Markdown {
                     file_of: Some(file_of),
                     ..
-                } => format!("![{}]({})", figure.caption, file_of(figure)),
+                } => format!("![{}]({})", figure.about(), file_of(figure)),
                 _ => return None,
             },
         })

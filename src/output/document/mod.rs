@@ -47,6 +47,16 @@ pub struct Figure {
     pub caption: String,
 }
 
+impl Figure {
+    /// What it shows: the caption or, without one, the title.
+    fn about(&self) -> &str {
+        match self.caption.as_str() {
+            "" => &self.sheet.title,
+            caption => caption,
+        }
+    }
+}
+
 impl Block {
     /// A heading.
     pub fn heading(text: &str) -> Self {

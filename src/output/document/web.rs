@@ -71,9 +71,12 @@ fn shown(block: &Block, level: u8) -> Result<String, PlotError> {
         }
         Block::Figure(figure) => {
             let svg = figure.sheet.svg(&print())?;
-            let image = picture(&String::from_utf8_lossy(&svg), &figure.caption);
-            let caption = escape(&figure.caption);
-            format!("<figure>\n{image}<figcaption>{caption}</figcaption>\n</figure>\n")
+            let image = picture(&String::from_utf8_lossy(&svg), figure.about());
+            let caption = match figure.caption.as_str() {
+                "" => String::new(),
+                caption => format!("<figcaption>{}</figcaption>\n", escape(caption)),
+            };
+            format!("<figure>\n{image}{caption}</figure>\n")
         }
     })
 }

@@ -152,7 +152,11 @@ impl Table {
         lines.insert(1, vec!["---".to_owned(); self.heads.len()]);
         let lines = lines.iter();
         lines
-            .map(|cells| format!("| {} |\n", cells.join(" | ")))
+            .map(|cells| {
+                let cells: Vec<String> =
+                    cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+                format!("| {} |\n", cells.join(" | "))
+            })
             .collect()
     }
 
