@@ -70,7 +70,7 @@ fn an_unwritable_path_is_named_before_anything_is_computed() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "precious").unwrap();
-    let man: (&[&str], _) = (&["man", "--out"], "");
+    let man: (&[&str], _) = (&["generate", "man", "--out"], "");
     for (arguments, extension) in WRITERS.into_iter().chain([man]) {
         let below = file.join("x").with_extension(extension);
         let missing = folder.path().join("no").join("x").with_extension(extension);
@@ -187,7 +187,12 @@ fn unprintable_results_are_an_error_and_unprintable_notes_are_not() {
         "0.1",
         "--json",
     ];
-    for arguments in [&["list"][..], &["completions", "zsh"], &["man"], &run] {
+    for arguments in [
+        &["list"][..],
+        &["generate", "zsh"],
+        &["generate", "man"],
+        &run,
+    ] {
         let mut program = Command::new(PROGRAM);
         let output = program.args(arguments).stdout(full()).output().unwrap();
         let stderr = stderr(&output);

@@ -1,4 +1,4 @@
-//! `--geometry` and `sandbox schema` on the command line.
+//! `--geometry` and `sandbox list --schema` on the command line.
 
 use crate::common::program::{run, run_json, stderr};
 
@@ -88,7 +88,7 @@ fn an_invalid_geometry_in_a_trajectory_is_refused() {
 
 #[test]
 fn the_schema_is_one_json_object_on_stdout() {
-    let printed = run_json(&["schema"]);
+    let printed = run_json(&["list", "--schema"]);
     assert_eq!(printed, sandbox::scenario::schema());
     assert_eq!(
         printed["$schema"],

@@ -49,7 +49,7 @@ const COMMANDS: [Command; 11] = [
         Some("estimate"),
     ),
     command(
-        &["verify", "--only", "2", "--only", "6", "--profile", "sph"],
+        &["verify", "2", "6", "--profile", "sph"],
         Some("verification"),
     ),
     command(&["verify", "suite.json"], Some("verification")),

@@ -205,6 +205,29 @@ fn no_name_ends_an_element_and_nothing_points_outside() {
 }
 
 #[test]
+fn draw_makes_the_page_of_a_run_and_refuses_what_pages_do_not_have() {
+    let folder = Folder::new();
+    let names = ["a.csv", "one.html", "other.html", "b.html"].map(|name| folder.path(name));
+    let [tracks, one, other, wrong] = names.each_ref().map(|file| text(file));
+    run_json(&[
+        "evacuation",
+        "--until",
+        "0.5",
+        "--trajectory",
+        tracks,
+        "--json",
+    ]);
+    run_json(&["draw", tracks, "-o", one, "--json"]);
+    run_json(&["page", tracks, "-o", other, "--json"]);
+    assert_eq!(fs::read(one).unwrap(), fs::read(other).unwrap());
+    let of_pictures = ["draw", tracks, "-o", wrong, "--field", "speed"];
+    refused(&of_pictures, 2, &["--field is for pictures", ".svg"]);
+    let scenario = ["draw", "evacuation", "-o", wrong];
+    refused(&scenario, 2, &["sandbox run evacuation --save"]);
+    assert!(!Path::new(wrong).exists());
+}
+
+#[test]
 fn wrong_outputs_are_refused_before_anything_is_computed() {
     let folder = Folder::new();
     let names = ["a.html", "b.html", "a.txt", "plan.html"].map(|name| folder.path(name));

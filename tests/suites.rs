@@ -193,7 +193,7 @@ fn a_suite_without_a_list_needs_no_labels_and_without_profiles_has_the_scenarios
         ]}]
     });
     changed(folder.path(), "", suite);
-    let output = run_in(folder.path(), &["verify", "my_suite.json", "--only", "out"]);
+    let output = run_in(folder.path(), &["verify", "my_suite.json", "out"]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let said = stderr(&output);
     assert!(

@@ -100,9 +100,7 @@ fn verify_judges_the_chosen_cases_and_draws_them() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("v");
     let out_text = text(&out).to_owned();
-    let output = run(&[
-        "verify", "--only", "6", "--only", "iso9", "--out", &out_text,
-    ]);
+    let output = run(&["verify", "6", "iso9", "--out", &out_text]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let printed = String::from_utf8(output.stdout).unwrap();
     let written = fs::read_to_string(out.join("verification.md")).unwrap();
@@ -127,16 +125,12 @@ fn verify_judges_the_chosen_cases_and_draws_them() {
 
 #[test]
 fn unknown_cases_and_tables_of_some_cases_are_refused() {
-    refused(
-        &["verify", "--only", "8"],
-        2,
-        &["--only 8: no such case", "12a", "iso13"],
-    );
-    let unknown = ["verify", "--only", "6", "--profile", "sphh"];
+    refused(&["verify", "8"], 2, &["8: no such case", "12a", "iso13"]);
+    let unknown = ["verify", "6", "--profile", "sphh"];
     refused(&unknown, 2, &["sphh"]);
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("table.md");
     fs::write(&file, "<!-- verification -->\n<!-- /verification -->\n").unwrap();
-    let update = ["verify", "--only", "6", "--update", text(&file)];
+    let update = ["verify", "6", "--update", text(&file)];
     refused(&update, 2, &["--update needs all cases and profiles"]);
 }

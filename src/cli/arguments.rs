@@ -82,7 +82,7 @@ impl ReplaceOptions {
 }
 
 /// Options of computing and reporting.
-#[derive(Args)]
+#[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Program")]
 pub struct ProgramOptions {
     /// Number of threads; the results do not depend on it [default: all cores]

@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
 use super::arguments::{ResumeOptions, RunOptions};
+use super::manual;
 use super::update::UpdateOptions;
 use super::{
     accuracy, bench, calibrate, compare, draw, estimate, inspect, measure, page, report, reproduce,
@@ -28,9 +30,16 @@ Examples:
   sandbox bench scaling --largest 100000
   sandbox list --settings";
 
-const SCHEMA_EXAMPLE: &str = "\
-Example: sandbox schema > scenario.schema.json
-Editors use it where a scenario has the key \"$schema\": \"scenario.schema.json\".";
+const LIST_EXAMPLES: &str = "\
+Examples:
+  sandbox list --settings
+  sandbox list --schema > scenario.schema.json
+Editors use the schema where a scenario has the key \"$schema\": \"scenario.schema.json\".";
+
+const GENERATE_EXAMPLES: &str = "\
+Examples:
+  sandbox generate bash > ~/.local/share/bash-completion/completions/sandbox
+  sandbox generate man --out ~/.local/share/man/man1";
 
 /// Simulate, measure and inspect dense crowds (SPH crowds, van Toll et al. 2021)
 #[derive(Parser)]
@@ -58,7 +67,7 @@ pub enum Command {
     /// Run the plaza: 50,000 people cross a square to the queues before ten gates (§7)
     #[command(after_help = "Example: sandbox plaza --until 30 --save plaza.rrd --record-every 25")]
     Plaza(RunOptions),
-    /// Run a scenario file
+    /// Run a scenario: a file, or a built-in one by its name
     #[command(after_help = "Example: sandbox run my_station.json --until 60 --threads 2 --json")]
     Run {
         /// The scenario, a JSON file (`-`: the standard input); or the name of a built-in one
@@ -72,14 +81,20 @@ pub enum Command {
     /// Print every force on single agents at one moment
     #[command(after_help = "Example: sandbox inspect evacuation --agent 17 --at 15 --json")]
     Inspect(inspect::InspectOptions),
-    /// Draw a scenario, trajectories or a recording, as a picture or an animation
-    #[command(after_help = "Example: sandbox draw scenarios/station.json --out station.png")]
+    /// Draw a scenario, trajectories or a recording: as a picture, as an animation, or as a page that plays in any
+    /// browser
+    #[command(
+        after_help = "Examples:\n  sandbox draw scenarios/station.json -o station.png\n  sandbox draw evacuation.rrd -o evacuation.html"
+    )]
     Draw(draw::DrawOptions),
     /// Write the document that is handed in with a run or a study: plan, results with definitions, pictures, limits
     #[command(after_help = report::EXAMPLES)]
     Report(report::ReportOptions),
-    /// Make a page of a recording or of trajectories: one file that plays in any browser
-    #[command(after_help = "Example: sandbox page evacuation.rrd --out evacuation.html")]
+    /// Make a page of a recording or of trajectories: the same as `draw RUN -o FILE.html`
+    #[command(
+        hide = true,
+        after_help = "Example: sandbox page evacuation.rrd --out evacuation.html"
+    )]
     Page(page::PageOptions),
     /// Regenerate the paper's tables and figures (§6) and compare them with the published ones
     #[command(
@@ -105,7 +120,7 @@ pub enum Command {
     /// Run verification cases of RiMEA, ISO 20414 and NIST: tables and pictures
     #[command(
         after_help = format!(
-            "{}Example: sandbox verify --only 12 --only iso6 --seeds 3",
+            "{}Example: sandbox verify 12 iso6 --seeds 3",
             suite::about(suite::VERIFICATION)
         ),
         mut_arg("out", |out| out.required(false).default_value("verification")),
@@ -124,8 +139,8 @@ pub enum Command {
     /// Search for parameters with which scenes come close to what was measured there
     #[command(after_help = calibrate::EXAMPLE)]
     Calibrate(calibrate::CalibrateOptions),
-    /// Print the JSON Schema of scenario files, for completion and checks in editors
-    #[command(after_help = SCHEMA_EXAMPLE)]
+    /// Print the JSON Schema of scenario files: the same as `list --schema`
+    #[command(hide = true)]
     Schema,
     /// Run a scenario over a grid or list of settings and over seeds, on many threads or machines
     #[command(after_help = sweep::EXAMPLE)]
@@ -141,8 +156,9 @@ pub enum Command {
     /// List what differs between two results: in settings and measurements, or between two trajectory files
     #[command(after_help = "Example: sandbox compare one.json other.json")]
     Compare(compare::CompareOptions),
-    /// List the built-in scenarios and the profiles, the settings that --set takes, or what measurements measure
-    #[command(after_help = "Example: sandbox list --settings")]
+    /// List the built-in scenarios and the profiles, the settings that --set takes, what measurements measure, or the
+    /// JSON Schema of scenario files
+    #[command(after_help = LIST_EXAMPLES)]
     List {
         /// List the settings that --set takes, with meaning, unit, default and range
         #[arg(long)]
@@ -150,22 +166,39 @@ pub enum Command {
         /// List what the measurements of scenarios measure: names, units and definitions of their values
         #[arg(long, conflicts_with = "settings")]
         measurements: bool,
+        /// Print the JSON Schema of scenario files, for completion and checks in editors
+        #[arg(long, conflicts_with_all = ["settings", "measurements", "update"])]
+        schema: bool,
         #[command(flatten)]
         document: UpdateOptions,
         /// Print one JSON object instead of text
         #[arg(long)]
         json: bool,
     },
-    /// Print a shell completion script
+    /// Print a shell completion script or the man page, or write the man pages of all commands
+    #[command(after_help = GENERATE_EXAMPLES)]
+    Generate {
+        /// A shell, or `man`
+        #[arg(value_parser = PossibleValuesParser::new(manual::names()))]
+        what: String,
+        /// With `man`: write the pages of the program and of all commands to this folder instead
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+    /// Print a shell completion script: the same as `generate SHELL`
     #[command(
+        hide = true,
         after_help = "Example: sandbox completions bash > ~/.local/share/bash-completion/completions/sandbox"
     )]
     Completions {
         /// The shell
         shell: Shell,
     },
-    /// Print the man page, or write the pages of all subcommands
-    #[command(after_help = "Example: sandbox man --out ~/.local/share/man/man1")]
+    /// Print the man page, or write the pages of all subcommands: the same as `generate man`
+    #[command(
+        hide = true,
+        after_help = "Example: sandbox man --out ~/.local/share/man/man1"
+    )]
     Man {
         /// Write the pages of the program and of all subcommands to this folder instead
         #[arg(long, value_name = "DIR")]

@@ -1,5 +1,5 @@
-//! `sandbox list`: the scenarios and profiles, the settings that `--set` takes, or what measurements measure. `sandbox
-//! schema`: the JSON Schema.
+//! `sandbox list`: the scenarios and profiles, the settings that `--set` takes, what measurements measure, or the JSON
+//! Schema.
 
 use std::collections::BTreeMap;
 
@@ -107,7 +107,7 @@ fn settings_text() -> String {
         text += &entry(setting.key, 0, setting.description);
         text += &entry("", 2, &values);
     }
-    text += "\nKeys of nested objects (? = optional; `sandbox schema` describes them):\n";
+    text += "\nKeys of nested objects (? = optional; `sandbox list --schema` describes them):\n";
     for (path, keys) in nested_settings() {
         text += &entry(&path, 0, &keys);
     }
@@ -115,7 +115,7 @@ fn settings_text() -> String {
             Parameters set this way apply to all profiles of the scenario.\n"
 }
 
-/// `sandbox schema`.
+/// `sandbox list --schema`.
 pub fn schema() -> Result<(), Failure> {
     say(format!("{:#}\n", scenario::schema()))
 }

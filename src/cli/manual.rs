@@ -4,28 +4,53 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use clap::CommandFactory;
+use clap::builder::PossibleValue;
+use clap::{CommandFactory, ValueEnum};
 use clap_complete::{Shell, generate};
 use clap_mangen::{Man, generate_to};
 
-use super::commands::Arguments;
 use super::failure::Failure;
 use super::terminal::say;
 use runs::outputs::{Manner, Outputs};
 
-/// `sandbox completions`.
+/// The page in place of a shell.
+const MAN: &str = "man";
+
+/// What can be generated: scripts for shells, and the man page.
+pub fn names() -> Vec<PossibleValue> {
+    let shells = Shell::value_variants().iter();
+    let shells = shells.filter_map(ValueEnum::to_possible_value);
+    shells.chain([PossibleValue::new(MAN)]).collect()
+}
+
+/// `sandbox generate`.
+pub fn generated(what: &str, folder: Option<&Path>) -> Result<(), Failure> {
+    match (what, folder) {
+        (MAN, folder) => man(folder),
+        (shell, None) => {
+            let shell = Shell::from_str(shell, false).map_err(Failure::Input)?;
+            completions(shell)
+        }
+        (shell, Some(folder)) => Err(Failure::Input(format!(
+            "--out {}: is for `generate man`; the script of {shell} goes to the standard output",
+            folder.display()
+        ))),
+    }
+}
+
+/// Prints the script of a shell.
 pub fn completions(shell: Shell) -> Result<(), Failure> {
-    let mut command = Arguments::command();
+    let mut command = super::commands::Arguments::command();
     let name = command.get_name().to_owned();
     let mut script = Vec::new();
     generate(shell, &mut command, name, &mut script);
     say(script)
 }
 
-/// `sandbox man`: prints the program's page, or writes all pages into a folder.
+/// Prints the program's page, or writes all pages into a folder.
 pub fn man(folder: Option<&Path>) -> Result<(), Failure> {
     // `sandbox help` has no page.
-    let command = Arguments::command().disable_help_subcommand(true);
+    let command = super::commands::Arguments::command().disable_help_subcommand(true);
     if let Some(folder) = folder {
         let path = folder.display();
         let failed = |error: io::Error| Failure::Output(format!("cannot write {path}: {error}"));

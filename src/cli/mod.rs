@@ -9,8 +9,9 @@ mod terminal;
 mod tips;
 mod values;
 
-mod arguments;
 mod documents;
+
+mod arguments;
 mod inputs;
 mod interrupt;
 mod memory;
@@ -30,13 +31,14 @@ mod accuracy;
 mod bench;
 mod calibrate;
 mod compare;
+mod page;
+
 mod draw;
 mod drive;
 mod estimate;
 mod inspect;
 mod list;
 mod measure;
-mod page;
 mod report;
 mod reproduce;
 mod stress;
@@ -115,7 +117,10 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Resume(options) => drive::resume(&options),
         Command::Inspect(options) => inspect::run(&options),
         Command::Draw(options) => draw::run(&options),
-        Command::Page(options) => page::run(&options),
+        Command::Page(options) => {
+            old("page", "draw RUN -o FILE.html");
+            page::run(&options)
+        }
         Command::Report(options) => report::run(&options),
         Command::Reproduce(options) => reproduce::run(&options),
         Command::Bench(options) => bench::run(&options),
@@ -124,11 +129,15 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Verify(options) => suite::verify(&options),
         Command::Validate(options) => suite::validate(&options),
         Command::Calibrate(options) => calibrate::run(&options),
-        Command::Schema => list::schema(),
+        Command::Schema => {
+            old("schema", "list --schema");
+            list::schema()
+        }
         Command::Sweep(options) => sweep::run(&options),
         Command::Estimate(options) => estimate::run(&options),
         Command::Measure(options) => measure::run(&options),
         Command::Compare(options) => compare::run(&options),
+        Command::List { schema: true, .. } => list::schema(),
         Command::List {
             measurements: true,
             document,
@@ -141,7 +150,21 @@ fn run(command: Command) -> Result<(), Failure> {
             json,
             ..
         } => list::run(settings, &document, json),
-        Command::Completions { shell } => manual::completions(shell),
-        Command::Man { out } => manual::man(out.as_deref()),
+        Command::Generate { what, out } => manual::generated(&what, out.as_deref()),
+        Command::Completions { shell } => {
+            old("completions", "generate SHELL");
+            manual::completions(shell)
+        }
+        Command::Man { out } => {
+            old("man", "generate man");
+            manual::man(out.as_deref())
+        }
     }
+}
+
+/// A note on an old spelling of a command.
+fn old(spelling: &str, new: &str) {
+    talk(&format!(
+        "note: `sandbox {spelling}` is `sandbox {new}` now; the old spelling works in this version only"
+    ));
 }

@@ -1,4 +1,4 @@
-//! `sandbox page`: a page of a recording or of trajectories.
+//! `sandbox draw RUN -o FILE.html`: a page of a recording or of trajectories.
 
 use std::path::{Path, PathBuf};
 

@@ -39,7 +39,8 @@ pub struct ReportOptions {
     pub run: String,
     #[command(flatten)]
     pub scene: SceneOptions,
-    /// The report (.html, .pdf or .md), its table (.csv) or all values (.json) [default: the name of the run with .html, in the working directory]
+    /// The report (.html, .pdf or .md), its table (.csv) or all values (.json) [default: the name of the run with
+    /// .html, in the working directory]
     #[arg(short, long, value_name = "FILE", value_parser = document())]
     pub out: Option<PathBuf>,
     /// Time at which the run ends, seconds [default: the scenario's duration]

@@ -29,12 +29,13 @@ pub const EVERY_SCENE: &str =
 
 #[derive(Args)]
 pub struct VerifyOptions {
-    /// Only this case, such as 6, 12a, 12 or iso6; give it several times for several cases
-    #[arg(long, value_name = "CASE")]
+    /// Only these cases, such as 6, 12a, 12 or iso6 [default: all]; after SUITE.json those of a suite of your own: a
+    /// study with `cases` (docs/validation.md)
+    #[arg(value_name = "SUITE.json|CASE")]
+    pub case: Vec<String>,
+    /// The same as CASE
+    #[arg(long, value_name = "CASE", hide = true)]
     pub only: Vec<String>,
-    /// A suite of your own: a study with `cases` (docs/validation.md) [default: the cases below]
-    #[arg(value_name = "SUITE.json")]
-    pub file: Option<PathBuf>,
     #[command(flatten)]
     pub suite: SuiteOptions,
 }
@@ -70,35 +71,38 @@ pub struct SuiteOptions {
 }
 
 pub fn verify(options: &VerifyOptions) -> Result<(), Failure> {
-    let suite = match &options.file {
-        Some(file) => Suite::read(file)?,
-        None => Suite::built_in(VERIFICATION)?,
-    };
-    let asked = Asked {
-        suite: &suite,
-        file: options.file.as_deref(),
-        judged: Judged::Seeds,
-        names: ("--only ", &options.only),
-    };
-    judge(&asked, &options.suite)
+    if !options.only.is_empty() {
+        talk("note: `--only CASE` is `CASE` now: the old spelling works in this version only");
+    }
+    let named = [options.case.as_slice(), &options.only].concat();
+    judge_named(&named, (VERIFICATION, Judged::Seeds), &options.suite)
 }
 
 pub fn validate(options: &ValidateOptions) -> Result<(), Failure> {
-    let (file, names) = match options.scene.split_first() {
+    judge_named(&options.scene, (VALIDATION, Judged::Means), &options.suite)
+}
+
+/// Runs cases, of the suite in the first name if it is a file, else of the built-in one.
+fn judge_named(
+    named: &[String],
+    (built_in, judged): (&str, Judged),
+    options: &SuiteOptions,
+) -> Result<(), Failure> {
+    let (file, names) = match named.split_first() {
         Some((file, names)) if file.ends_with(".json") => (Some(Path::new(file)), names),
-        _ => (None, options.scene.as_slice()),
+        _ => (None, named),
     };
     let suite = match file {
         Some(file) => Suite::read(file)?,
-        None => Suite::built_in(VALIDATION)?,
+        None => Suite::built_in(built_in)?,
     };
     let asked = Asked {
         suite: &suite,
         file,
-        judged: Judged::Means,
-        names: ("", names),
+        judged,
+        names,
     };
-    judge(&asked, &options.suite)
+    judge(&asked, options)
 }
 
 /// All cases of a built-in suite, each with a line about it.
@@ -118,18 +122,17 @@ struct Asked<'a> {
     /// The file of the suite, if it is not built in.
     file: Option<&'a Path>,
     judged: Judged,
-    /// The names of cases, all without names. The first text begins messages about a name.
-    names: (&'a str, &'a [String]),
+    /// The names of cases; all without names.
+    names: &'a [String],
 }
 
 /// Runs the cases that are asked for.
 fn judge(asked: &Asked, options: &SuiteOptions) -> Result<(), Failure> {
     let suite = asked.suite;
-    let (option, names) = asked.names;
-    let cases = suite.chosen(names).map_err(|name| {
+    let cases = suite.chosen(asked.names).map_err(|name| {
         let known = suite.cases.iter().map(|case| shown(&case.name));
         let (name, known) = (shown(&name), known.collect::<Vec<_>>().join(", "));
-        Failure::Input(format!("{option}{name}: no such case; there are {known}"))
+        Failure::Input(format!("{name}: no such case; there are {known}"))
     })?;
     let settings = settings(options)?;
     let status = status(asked, options)?;
@@ -204,8 +207,7 @@ fn status(asked: &Asked, options: &SuiteOptions) -> Result<Option<PathBuf>, Fail
         return Err(Failure::Input(reason.to_owned()));
     }
     let status = Status::beside(document);
-    let (_, names) = asked.names;
-    match names.is_empty() && (options.profile.is_empty() || status.is_some()) {
+    match asked.names.is_empty() && (options.profile.is_empty() || status.is_some()) {
         true => Ok(status),
         false => {
             let reason = "--update needs all cases and profiles; name none";

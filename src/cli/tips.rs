@@ -17,8 +17,8 @@ const COMMANDS: [(&str, &str); 10] = [
     ("start", "sandbox run FILE"),
     ("version", "sandbox --version"),
     ("plot", "sandbox draw RUN"),
-    ("view", "sandbox page RUN"),
-    ("show", "sandbox draw RUN, or sandbox page RUN"),
+    ("view", "sandbox draw RUN -o FILE.html"),
+    ("show", "sandbox draw RUN"),
     ("analyze", "sandbox measure FILE"),
     ("analyse", "sandbox measure FILE"),
     ("scenarios", "sandbox list"),
@@ -114,7 +114,8 @@ fn has(command: &Command, option: &str) -> bool {
 
 /// What says which commands have an option. The commands of built-in scenarios have those of `run`.
 fn owners(option: &str, program: &Command) -> Option<String> {
-    let owners = program.get_subcommands().filter(|one| has(one, option));
+    let shown = program.get_subcommands().filter(|one| !one.is_hide_set());
+    let owners = shown.filter(|one| has(one, option));
     let names = owners.map(Command::get_name);
     let names: Vec<&str> = names
         .filter(|name| Source::shipped(name).is_none())

@@ -195,11 +195,11 @@ pub fn is_page(path: &Path) -> bool {
 pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| {
         let extension = path.extension().unwrap_or_default();
-        let mut known = ["svg", "png", "pdf", "gif", "mp4", "webm"].iter();
+        let mut known = ["svg", "png", "pdf", "gif", "mp4", "webm", "html", "htm"].iter();
         match known.any(|known| extension.eq_ignore_ascii_case(known)) {
             true => Ok(path),
             false => Err("a picture's name must end in .svg, .png or .pdf, that of an animation in .gif, .png, .mp4 or \
-                          .webm"),
+                          .webm, that of a page in .html"),
         }
     })
 }

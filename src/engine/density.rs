@@ -13,6 +13,7 @@ use crate::agents::Agents;
 use crate::boundary::WallMethod;
 use crate::frame::Fields;
 use crate::geometry::Walls;
+use crate::limits::{FARTHEST, HIGHEST_DENSITY, STRONGEST};
 use crate::math::Vector;
 use crate::neighbors::{BLOCK, ClusterBlock, Neighbors, TASK};
 use crate::pairs::prelude::*;
@@ -27,18 +28,23 @@ use crate::pairs::{
 pub struct SphParameters {
     /// h (§5.2), meters: the support radius of the SPH kernels. Larger: smoother densities, at a cost that grows with
     /// its square. At 0.5 m an agent has four neighbors at 5 P/m², too few for a density.
+    #[schemars(range(min = 0.01, max = FARTHEST))]
     pub support_radius: f64,
     /// k (Eq. 5), m²/s²: the pressure per excess density; pressure alone carries waves at √(k/2). Higher: a stiffer
     /// crowd; 0: no pressure. From about 400 on, crowds between the paper's walls keep boiling at any time step.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub gas_constant: f64,
     /// ρ⁰min, P/m²: the lowest personal rest density. Higher: sparser crowds feel no pressure. If it equals
     /// `rest_density_max`, the rest density is static, and crowds at rest move more.
+    #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
     pub rest_density_min: f64,
     /// ρ⁰max, P/m²: the highest personal rest density; above it, agents are always pushed apart. Higher: denser
     /// crowds. From about 5 on, discs of 0.24 m overlap in any packing.
+    #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
     pub rest_density_max: f64,
     /// T^ρ (Eq. 8), seconds: the time in which the personal rest density adapts. Longer: changes of density cause
     /// pressure for longer. Below Δt it adapts within one frame, and only densities beyond its limits cause pressure.
+    #[schemars(range(min = 1e-6, max = 1e6))]
     pub averaging_time: f64,
 }
 

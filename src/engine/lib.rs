@@ -7,6 +7,8 @@
 
 pub mod math;
 
+pub mod limits;
+
 pub mod period;
 
 pub mod random;

@@ -17,8 +17,8 @@ pub struct DrawOptions {
     pub run: String,
     #[command(flatten)]
     pub scene: SceneOptions,
-    /// The picture (.svg, .png, .pdf), or an animation (.gif, .png, .mp4, .webm) [default: the run's name with .svg,
-    /// in the working directory]
+    /// The picture (.svg, .png, .pdf), an animation (.gif, .png, .mp4, .webm), or a page (.html) of all of a recording
+    /// or of trajectories [default: the run's name with .svg, in the working directory]
     #[arg(short, long, value_name = "FILE", value_parser = picture())]
     pub out: Option<PathBuf>,
     /// The moment, seconds; at 0 no agent has moved yet
@@ -74,6 +74,10 @@ pub struct DrawOptions {
     /// For a column of a paper that is this wide, millimeters: without a title
     #[arg(long, value_name = "MM", conflicts_with = "width", value_parser = millimeters)]
     pub paper: Option<f64>,
+    /// Put the Rerun viewer and the recording into a page, too: the folder of the Python package `rerun_notebook`
+    /// 0.36.3
+    #[arg(long, value_name = "DIR")]
+    pub page_viewer: Option<PathBuf>,
     /// Unit of the coordinates in a trajectory file [default: that of the file, else m]
     #[arg(long, value_parser = PossibleValuesParser::new(["m", "cm"]))]
     pub unit: Option<String>,

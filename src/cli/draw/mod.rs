@@ -11,7 +11,7 @@ mod simulated;
 
 pub use arguments::DrawOptions;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
@@ -21,7 +21,9 @@ use super::frames::{Run, recorded, tracked};
 use super::inputs::{NO_WALLS, in_order};
 use super::interrupt::Interrupt;
 use super::moment;
+use super::page::PageOptions;
 use super::terminal::tell;
+use super::values::is_page;
 use super::watch::bar;
 use look::{Look, NONE};
 use output::picture::{Paths, Picture, Trails};
@@ -93,6 +95,9 @@ pub fn run(options: &DrawOptions) -> Result<(), Failure> {
         let stem = Path::new(&options.run).file_stem().unwrap_or_default();
         Path::new(stem).with_added_extension("svg")
     });
+    if is_page(&out) {
+        return super::page::run(&page(options, out)?);
+    }
     if options.egress {
         check_format(&out, false)?;
         return egress::draw(options, &out, outputs);
@@ -116,6 +121,49 @@ pub fn run(options: &DrawOptions) -> Result<(), Failure> {
         text = format!("{file}: {count} frames from {from:.2} s to {time:.2} s\n");
     }
     tell(program.json, || result, || text)
+}
+
+/// The options of a page: it plays all of a recording or of trajectories, in the colors of the file.
+fn page(options: &DrawOptions, out: PathBuf) -> Result<PageOptions, Failure> {
+    let given = [
+        ("--at", options.at != 0.0),
+        ("--from", options.from.is_some()),
+        ("--color", options.color.is_some()),
+        ("--range", options.range.is_some()),
+        ("--trails", options.trails.is_some()),
+        ("--field", options.field.is_some()),
+        ("--paths", !options.paths.is_empty()),
+        ("--egress", options.egress),
+        ("--width", options.width.is_some()),
+        ("--dpi", options.dpi.is_some()),
+        ("--paper", options.paper.is_some()),
+    ];
+    if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
+        let file = out.display();
+        return Err(Failure::Input(format!(
+            "{option} is for pictures, and {file} is a page: leave it out, or give a file in .svg, .png or .pdf"
+        )));
+    }
+    let scene = &options.scene;
+    let run = PathBuf::from(&options.run);
+    let extension = extension(&run);
+    if extension == "json" || extension.is_empty() {
+        return Err(Failure::Input(format!(
+            "{}: a page is made of a run: sandbox run {} --save {}",
+            options.run,
+            options.run,
+            out.display()
+        )));
+    }
+    Ok(PageOptions {
+        run,
+        out: Some(out),
+        geometry: scene.geometry.clone(),
+        unit: options.unit.clone(),
+        trajectory_fps: options.trajectory_fps,
+        page_viewer: options.page_viewer.clone(),
+        program: scene.program,
+    })
 }
 
 /// The extension of a path in lowercase; empty without one.

@@ -12,6 +12,7 @@ use schemars::JsonSchema;
 
 use crate::forces::rates::{Extremes, Rates};
 use crate::frame::Frame;
+use crate::limits::STRONGEST;
 use crate::math::Vector;
 use crate::pairs::prelude::*;
 use crate::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, splat};
@@ -25,14 +26,18 @@ const ON_THE_WALL: f64 = 1e-9;
 pub struct Contact {
     /// K^ag (Eq. 22), 1/s²: the stiffness of contacts between agents. Higher: agents overlap less; 0: no contact
     /// force. Above about 2000 the paper's time step is too long. Default: 1000; with SPH 50.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub agent_stiffness: Option<f64>,
     /// K^obs (Eq. 23), 1/s²: the stiffness of contacts with walls. Higher: agents enter walls less deeply; 0: no
     /// contact force. Above about 4000 the paper's time step is too long. Default: 1000; with SPH 200.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub wall_stiffness: Option<f64>,
     /// The part of D_i that counts in contacts between agents. Smaller: shoulders turn, crowds get denser before
     /// overlaps push. Masses, entrances and avoidance keep D_i.
+    #[schemars(range(min = 0.1, max = 1), extend("default" = 1))]
     pub contact_scale: f64,
     /// The part of D_i that counts in contacts with walls. Smaller: more room in narrow doors and corridors.
+    #[schemars(range(min = 0.1, max = 1), extend("default" = 1))]
     pub wall_contact_scale: f64,
 }
 

@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 
 use crate::forces::rates::{Extremes, Rates};
 use crate::frame::Frame;
+use crate::limits::STRONGEST;
 use crate::math::{Vector, direction};
 use crate::neighbors::BLOCK;
 use crate::pairs::{Level, dispatch};
@@ -18,9 +19,11 @@ use crate::pairs::{Level, dispatch};
 pub struct GoalForce {
     /// K^goal (Eq. 17): the strength of the goal force. Higher: agents push harder toward their goals. Above about 40
     /// the paper's time step is too long.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub goal_scale: f64,
     /// τ (Eq. 17), seconds: the time in which the goal force corrects the velocity. Longer: agents respond more slowly
     /// and push less. Below about 0.013 s the paper's time step is too long.
+    #[schemars(range(min = 1e-6, max = 1e6))]
     pub relaxation_time: f64,
 }
 

@@ -25,6 +25,7 @@ use schemars::JsonSchema;
 
 use crate::forces::rates::{Extremes, Rates};
 use crate::frame::Frame;
+use crate::limits::{FARTHEST, STRONGEST};
 use crate::math::{Vector, direction};
 use crate::pairs::prelude::*;
 use crate::pairs::{Bodies, Lanes, Level, Real, Repulsion, Simd, dispatch, load, splat, spread};
@@ -34,24 +35,32 @@ use crate::pairs::{Bodies, Lanes, Level, Real, Repulsion, Simd, dispatch, load, 
 #[schemars(default)]
 pub struct Legs {
     /// λᵤ (`legs`), 1/s: the rate at which a body falls where it leans. Higher: people fall and sway faster.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub unbalancing_rate: f64,
     /// λ_b (`legs`), 1/s: the rate at which legs run after a body that leans. Higher: people regain their balance
     /// sooner.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub balancing_rate: f64,
     /// v_s (`legs`), m/s: the speed to which bodies fall and legs run. Higher: people lean farther.
+    #[schemars(range(min = 0, max = 100))]
     pub balance_speed: f64,
     /// A (`legs`), m/s²: the strength of the repulsion of bodies, and of legs, for people of mass 1. Higher: more
     /// distance; 0: bodies only touch, and legs do not.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub legs_strength: f64,
     /// B (`legs`), meters: the range over which the repulsion of bodies falls by a factor e.
+    #[schemars(range(min = 0.01, max = FARTHEST))]
     pub body_range: f64,
     /// B_l (`legs`), meters: the range over which the repulsion of legs falls by a factor e. Longer: legs find no room
     /// to run after the body.
+    #[schemars(range(min = 0.01, max = FARTHEST))]
     pub leg_range: f64,
     /// R (`legs`), meters: people farther apart do not repel each other. Longer: the cost grows with its square.
+    #[schemars(range(min = 0.01, max = FARTHEST))]
     pub legs_reach: f64,
     /// The longest lean (`legs`), meters, from legs to body. At this lean balance is lost, and the body pulls the legs
     /// along.
+    #[schemars(range(min = 0.01, max = 2))]
     pub lean_limit: f64,
 }
 

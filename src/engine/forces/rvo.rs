@@ -22,6 +22,7 @@ use crate::clock::PAPER_COARSE_STEP;
 use crate::forces::rates::Rates;
 use crate::frame::Frame;
 use crate::geometry::Wall;
+use crate::limits::STRONGEST;
 use crate::math::Vector;
 use crate::random::{self, Purpose};
 
@@ -31,9 +32,11 @@ use crate::random::{self, Purpose};
 pub struct Rvo {
     /// w (Eq. 20), meters: the weight of the time to collision in RVO. Higher: agents avoid collisions earlier, with
     /// larger detours; 0: they do not avoid them.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub collision_weight: f64,
     /// The number of candidate velocities of RVO per agent and coarse frame. The cost grows with it. It is part of the
     /// model: 100 lower the density of the evacuation by 3.7 %, 5000 raise it by 1.6 %.
+    #[schemars(range(min = 1, max = 1e6))]
     pub candidates: u32,
     /// As [`SocialForce::avoidance_radius`](super::social::SocialForce::avoidance_radius), meters.
     #[schemars(skip)]

@@ -20,6 +20,7 @@ use schemars::JsonSchema;
 
 use crate::forces::rates::{Extremes, Rates};
 use crate::frame::Frame;
+use crate::limits::{FARTHEST, STRONGEST};
 use crate::math::{Vector, direction};
 use crate::neighbors::{BLOCK, Run};
 use crate::pairs::{Bodies, Level, Real, Simd, dispatch, each};
@@ -30,25 +31,32 @@ use crate::pairs::{Bodies, Level, Real, Simd, dispatch, each};
 pub struct SocialForce {
     /// V₀ (Eq. 18), m²/s²: the strength of the social force between agents. Higher: they keep more distance; 0: none.
     /// V₀/σ² acts like a stiffness and limits the time step like `agent_stiffness`.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub agent_strength: f64,
     /// σ (Eq. 18), meters: the range over which the social force between agents falls by a factor e. Longer: agents
     /// react from farther away, but less strongly when close.
+    #[schemars(range(min = 0.01, max = FARTHEST))]
     pub agent_range: f64,
     /// T (Eq. 18), seconds: how far ahead the social force looks. Longer: agents avoid collisions earlier; 0: they
     /// react to distances alone.
+    #[schemars(range(min = 0, max = 1000))]
     pub anticipation_time: f64,
     /// U₀ (Eq. 19), m²/s²: the strength of the social force of walls. Higher: agents keep more distance from walls;
     /// 0: none.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub wall_strength: f64,
     /// R (Eq. 19), meters: the range over which the social force of walls falls by a factor e. Longer: agents react to
     /// walls from farther away, but less strongly when close.
+    #[schemars(range(min = 0.01, max = FARTHEST))]
     pub wall_range: f64,
     /// Social forces and RVO ignore agents and walls beyond this distance, meters. Longer: the cost grows with its
     /// square. If it is shorter than the distance walked in `anticipation_time`, agents notice others late.
+    #[schemars(range(min = 0.01, max = FARTHEST))]
     pub avoidance_radius: f64,
     /// Leaves out social forces that are certainly smaller than this, for an agent of mass 1, m/s². Higher: cheaper
     /// and less exact. 1e-3 moves agents by up to 2 cm in a second and saves up to a third of the time in crowds of
     /// 10,000.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub avoidance_tolerance: f64,
 }
 

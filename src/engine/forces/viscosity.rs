@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 
 use crate::forces::rates::Rates;
 use crate::frame::Frame;
+use crate::limits::STRONGEST;
 use crate::pairs::prelude::*;
 use crate::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, splat};
 
@@ -17,7 +18,7 @@ use crate::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, 
 pub struct Viscosity {
     /// μ (Eq. 2), 1/s: the viscosity. Higher: neighbors move together, and a crowd calms down sooner after a push;
     /// 0: none. Above about 40 the paper's time step is too long.
-    #[schemars(rename = "viscosity")]
+    #[schemars(rename = "viscosity", range(min = 0, max = STRONGEST), extend("default" = 0))]
     pub coefficient: f64,
 }
 

@@ -18,6 +18,7 @@ mod person;
 pub mod pictures;
 mod record;
 mod regions;
+mod regions_report;
 mod report;
 mod safety;
 mod safety_report;

@@ -5,7 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use super::record::RECORDING;
-use super::report::regions_table;
+use super::regions_report;
 use super::{CLASS, Class, Classes, Density, Measured, Moment, Safety};
 use analysis::exposure::PersonExposure;
 use analysis::statistics::MeanStd;
@@ -114,7 +114,7 @@ pub fn tables(measured: &Measured, tracks: &Tracks) -> Result<Vec<(String, Vec<u
         fields(measured)?,
         csv_lines(&frames.collect::<Vec<_>>(), true)?,
         classes(measured).csv()?,
-        regions_table(measured).csv()?,
+        regions_report::table(measured).csv()?,
         exposure(&measured.safety, tracks).csv()?,
         csv_lines(&measured.safety.samples, true)?,
         csv_lines(&crossings.collect::<Vec<_>>(), true)?,

@@ -2,18 +2,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
+use super::regions_report::{corners, mean_and_std, of_class, spread};
 use super::{
     CLASS, Class, Classes, Crossings, Density, Diagram, Measured, Options, Site, Way, output,
-    pictures, safety_report,
+    pictures, regions_report, safety_report,
 };
 use crate::error::LabError;
 use ::output::document::{Block, Document, Findings, Names};
-use ::output::table::{Cell, Table};
+use ::output::table::Table;
 use analysis::crossing::Passages;
-use analysis::statistics::MeanStd;
-use engine::scene::Region;
 use scenario::trajectories::Tracks;
 
 /// The name of the files with all results.
@@ -46,7 +45,7 @@ impl Report<'_> {
             let flow_of = self.options.flow_of;
             blocks.push(Block::table(flows(&self.measured.crossings, flow_of)));
         }
-        blocks.extend(regions(self.measured));
+        blocks.extend(regions_report::block(self.measured));
         for (k, diagram) in self.measured.diagrams.iter().enumerate() {
             let place = diagram.region.map(|region| {
                 let [min, max] = [region.min, region.max].map(|p| format!("({}, {})", p.x, p.y));
@@ -153,7 +152,7 @@ impl Report<'_> {
             })),
             "safety": safety_report::json(self.measured),
             "lines": lines.collect::<Vec<_>>(),
-            "regions": regions_json(self.measured),
+            "regions": regions_report::json(self.measured),
             "fundamental_diagrams": self.measured.diagrams.iter().map(diagram).collect::<Vec<_>>(),
             "notes": self.tracks.notes,
         })
@@ -216,16 +215,6 @@ fn classes(diagram: &Diagram) -> Table {
     columns.table()
 }
 
-/// A mean and its standard deviation; `None` without values.
-fn spread(of: MeanStd) -> Option<Cell> {
-    (of.count > 0).then(|| Cell::Spread(of.mean, Some(of.population_std())))
-}
-
-/// `null` without values.
-fn mean_and_std(of: &MeanStd) -> Option<Value> {
-    (of.count > 0).then(|| json!({"mean": of.mean, "std": of.population_std()}))
-}
-
 fn line(crossings: &Crossings, flow_of: Passages) -> Value {
     let ends = [crossings.line.start, crossings.line.end].map(|p| [p.x, p.y]);
     json!({
@@ -258,95 +247,4 @@ fn diagram(diagram: &Diagram) -> Value {
         "persons": kinds(&diagram.of_persons),
         "frames": kinds(&diagram.of_frames),
     })
-}
-
-/// The means of a region by one density.
-struct RegionMeans<'m> {
-    /// The number of the region, from 1.
-    number: usize,
-    region: Region,
-    diagram: &'m Diagram,
-    kind: Density,
-    means: Class,
-}
-
-/// One row per region and density.
-fn region_means(measured: &Measured) -> Vec<RegionMeans<'_>> {
-    let regions = measured.diagrams.iter().zip(1..);
-    let rows = regions.flat_map(|(diagram, number)| {
-        let row = move |kind| {
-            Some(RegionMeans {
-                number,
-                region: diagram.region?,
-                diagram,
-                kind,
-                means: diagram.means(kind, measured.overview.frames)?,
-            })
-        };
-        Density::ALL.into_iter().filter_map(row)
-    });
-    rows.collect()
-}
-
-/// The means of regions; nothing without regions.
-fn regions(measured: &Measured) -> Option<Block> {
-    let rows = region_means(measured);
-    let [from, until] = measured.overview.times;
-    let table = Table::of(&rows)
-        .column("region", |row| row.number)
-        .fixed("walkable [m²]", 2, |row| row.diagram.walkable)
-        .column("by", |row| row.kind.name())
-        .fixed("density [P/m²]", 3, |row| spread(row.means.density))
-        .fixed("speed [m/s]", 3, |row| spread(row.means.speed))
-        .fixed("flow [1/(m s)]", 3, |row| spread(row.means.flow))
-        .table();
-    let caption = format!(
-        "Regions, means over {} frames from {from:.2} s to {until:.2} s.",
-        measured.overview.frames,
-    );
-    (!rows.is_empty()).then_some(Block::Table(table, caption))
-}
-
-/// The means of regions as a table for programs.
-pub fn regions_table(measured: &Measured) -> Table {
-    let [from, until] = measured.overview.times;
-    let rows = region_means(measured);
-    let parts = ["_mean", "_std"];
-    Table::of(&rows)
-        .column("region", |row| row.number)
-        .column("walkable_m2", |row| row.diagram.walkable)
-        .column("from_secs", |_| from)
-        .column("until_secs", |_| until)
-        .column("by", |row| row.kind.key())
-        .spread("density", 3, parts, |row| spread(row.means.density))
-        .spread("speed", 3, parts, |row| spread(row.means.speed))
-        .spread("flow", 3, parts, |row| spread(row.means.flow))
-        .table()
-}
-
-fn regions_json(measured: &Measured) -> Vec<Value> {
-    let rows = region_means(measured);
-    let regions = rows.chunk_by(|a, b| a.number == b.number);
-    let region = |rows: &[RegionMeans]| {
-        let means = rows.iter();
-        let means = means.map(|row| (row.kind.key().to_owned(), of_class(&row.means)));
-        json!({
-            "region": corners(&rows[0].region),
-            "walkable_m2": rows[0].diagram.walkable,
-            "means": means.collect::<Map<_, _>>(),
-        })
-    };
-    regions.map(region).collect()
-}
-
-fn of_class(class: &Class) -> Value {
-    json!({
-        "density": mean_and_std(&class.density),
-        "speed": mean_and_std(&class.speed),
-        "flow": mean_and_std(&class.flow),
-    })
-}
-
-fn corners(region: &Region) -> [[f64; 2]; 2] {
-    [region.min, region.max].map(|p| [p.x, p.y])
 }

@@ -20,7 +20,7 @@ const ENDINGS: [(&[&str], &str); 4] = [
     ),
     (
         &["csv", "sqlite", "db", "h5", "rrd"],
-        "holds a run that is over: `sandbox measure`, `draw` and `page` read it, and a scenario takes its people with \
+        "holds a run that is over: `sandbox measure` and `sandbox draw` read it, and a scenario takes its people with \
          `from`",
     ),
 ];

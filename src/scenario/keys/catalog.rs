@@ -93,6 +93,9 @@ pub enum ProfileError {
     /// It is a blend, where only a plain profile may be.
     #[error("a blend must consist of plain profiles; `{0}` is a blend")]
     IsBlend(String),
+    /// A parameter is no finite number.
+    #[error("the parameter {0} must be a finite number")]
+    NotFinite(&'static str),
     /// Its profiles do not fit together.
     #[error(transparent)]
     Blend(#[from] BlendError),
@@ -138,6 +141,7 @@ pub fn named(name: &str, parameters: &Parameters) -> Result<Blend, ProfileError>
 /// # Errors
 /// No profile has this name, or it is a blend.
 pub fn plain(name: &str, parameters: &Parameters) -> Result<Profile, ProfileError> {
+    parameters.check().map_err(ProfileError::NotFinite)?;
     let (base, parameters) = resolved(name, parameters);
     let (kind, sph) = match base {
         "sf" => (NavigationKind::Social, false),

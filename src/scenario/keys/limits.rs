@@ -1,5 +1,7 @@
 //! Limits and defaults that several keys share.
 
+pub use engine::limits::{HIGHEST_DENSITY, STRONGEST};
+
 /// Default duration, seconds.
 pub const DEFAULT_DURATION: f64 = 60.0;
 /// Default profile.
@@ -8,8 +10,3 @@ pub const DEFAULT_PROFILE: &str = "sph";
 pub const LONGEST_TIME: f64 = 1e7;
 /// The largest coordinate, meters. Beyond this, walls and contacts lose precision.
 pub const FARTHEST: f64 = 1e6;
-
-/// The largest strength or stiffness.
-pub const STRONGEST: f64 = 1e9;
-/// The highest density, P/m².
-pub const HIGHEST_DENSITY: f64 = 1000.0;

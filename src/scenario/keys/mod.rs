@@ -11,7 +11,6 @@ pub mod limits;
 pub mod names;
 pub mod numerics;
 pub mod parameters;
-mod parts;
 pub mod people;
 pub mod periodic;
 pub mod places;

@@ -19,6 +19,7 @@ use schemars::JsonSchema;
 use super::Walkers;
 use super::headway::AGAINST;
 use crate::forces::rates::{Extremes, Rates};
+use crate::limits::HIGHEST_DENSITY;
 use crate::neighbors::Run;
 use crate::pairs::prelude::*;
 use crate::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
@@ -28,8 +29,10 @@ use crate::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, s
 #[schemars(default)]
 pub struct DensityAhead {
     /// The jam density (`density-ahead`), P/m²: agents stand before a crowd of this density. Higher: faster crowds.
+    #[schemars(range(min = 0.01, max = HIGHEST_DENSITY))]
     pub jam_density: f64,
     /// Weidmann's γ (`density-ahead`), P/m²: how soon agents slow down. Higher: faster at all densities below the jam.
+    #[schemars(range(min = 0.01, max = HIGHEST_DENSITY))]
     pub slowing_density: f64,
 }
 

@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 
 use crate::forces::rates::{Extremes, Rates};
 use crate::frame::Frame;
+use crate::limits::{HIGHEST_DENSITY, STRONGEST};
 use crate::math::Vector;
 
 /// Parameters of the drag.
@@ -16,9 +17,11 @@ use crate::math::Vector;
 #[schemars(default)]
 pub struct Drag {
     /// γ₀ (`drag`), m²/s: the friction per density above `drag_from_density`. Higher: slower crowds.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub drag_per_density: f64,
     /// The density (`drag`), P/m², at which the friction begins. Below 1.55 it slows lone agents, too, whose density is
     /// that of their own mass.
+    #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
     pub drag_from_density: f64,
 }
 

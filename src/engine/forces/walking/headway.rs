@@ -18,6 +18,7 @@ use schemars::JsonSchema;
 
 use super::{FADE, Motions, ROUNDING, View, Walkers};
 use crate::forces::rates::Rates;
+use crate::limits::FARTHEST;
 use crate::neighbors::Run;
 use crate::pairs::prelude::*;
 use crate::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat};
@@ -28,13 +29,17 @@ use crate::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat};
 pub struct Headway {
     /// T (`headway`), seconds: the time gap. An agent with d meters to the nearest agent ahead walks at (d - l)/T.
     /// Longer: slower crowds and smaller flows. Below about twice `relaxation_time` files stop and go.
+    #[schemars(range(min = 0.01, max = 100))]
     pub headway_time: f64,
     /// l (`headway`), meters: the distance to the nearest agent ahead at which an agent stands. Longer: sparser queues.
+    #[schemars(range(min = 0, max = FARTHEST))]
     pub headway_length: f64,
     /// w (`headway`), meters: the half-width of the lane; its edges fade over another half of it. Wider: slower crowds.
+    #[schemars(range(min = 0.01, max = FARTHEST))]
     pub lane_half_width: f64,
     /// t (`headway`), seconds: agents look at the distance to the nearest agent ahead that they expect after this time.
     /// Longer: faster behind agents that speed up, as before a door; no change in a crowd that moves as one.
+    #[schemars(range(min = 0, max = 10))]
     pub headway_anticipation: f64,
 }
 

@@ -2,6 +2,8 @@
 
 use schemars::JsonSchema;
 
+use crate::limits::{FARTHEST, HIGHEST_DENSITY};
+
 /// Parameters of the factor of T.
 ///
 /// Hurried people follow each other more closely. Calm people do so only where they are packed; in a queue they keep
@@ -10,20 +12,28 @@ use schemars::JsonSchema;
 #[schemars(default)]
 pub struct Gap {
     /// `headings`: the share of T that agents with a motivation of 1 do without.
+    #[schemars(range(min = 0, max = 0.95))]
     pub hurry_share: f64,
     /// `headings`: the share of T that calm agents in packed crowds do without.
+    #[schemars(range(min = 0, max = 0.95))]
     pub press_share: f64,
     /// `headings`, P/m²: the density from which on they do so.
+    #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
     pub press_density: f64,
     /// `headings`, P/m²: they do so fully this far above that density.
+    #[schemars(range(min = 0.01, max = HIGHEST_DENSITY))]
     pub press_range: f64,
     /// `headings`: T of calm agents in a queue is longer by this share of it.
+    #[schemars(range(min = 0, max = 10))]
     pub queue_share: f64,
     /// `headings`, P/m²: the density from which on it is longer; it is so fully 1 P/m² above it.
+    #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
     pub queue_density: f64,
     /// `headings`: T is longer by this share of it at a narrowing.
+    #[schemars(range(min = -0.9, max = 10))]
     pub narrowing_share: f64,
     /// `headings`, meters: the distance from a narrowing at which this share has fallen to 1/e.
+    #[schemars(range(min = 0.01, max = FARTHEST))]
     pub narrowing_range: f64,
 }
 

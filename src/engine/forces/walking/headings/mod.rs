@@ -32,6 +32,7 @@ use super::{FADE, Headway, View};
 use crate::clock::Clock;
 use crate::forces::rates::Rates;
 use crate::frame::Frame;
+use crate::limits::FARTHEST;
 use crate::math::{Vector, unit_vector};
 
 /// The number of headings.
@@ -54,20 +55,26 @@ pub struct Headings {
     #[schemars(skip)]
     pub gap: Gap,
     /// The largest angle between a heading and the way (`headings`), degrees.
+    #[schemars(range(min = 0, max = 90))]
     pub heading_angle: f64,
     /// w_c (`headings`), meters: the half-width of the lane in which agents look for room along a heading; its edges
     /// fade over another half of it. Wider: agents keep more distance to the side of others.
+    #[schemars(range(min = 0.01, max = FARTHEST))]
     pub heading_half_width: f64,
     /// `headings`, meters: agents compare headings up to this far beyond the distance that they need to walk at their
     /// preferred speed. Without it, slower agents ahead are not overtaken.
+    #[schemars(range(min = 0, max = FARTHEST))]
     pub look_ahead: f64,
     /// p (`headings`), m/s per radian: the utility that a turn costs. Higher: agents keep to their headings.
+    #[schemars(range(min = 0, max = 10))]
     pub heading_persistence: f64,
     /// b (`headings`), meters: agents expect those that come toward them this much farther to their left, and evade to
     /// the right; negative: to the left.
+    #[schemars(range(min = -2, max = 2))]
     pub side_preference: f64,
     /// `headings`, seconds: the time after which agents look at the distance to agents that come toward them. Longer:
     /// they evade earlier.
+    #[schemars(range(min = 0, max = 10))]
     pub evasion_time: f64,
 }
 
