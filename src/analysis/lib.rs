@@ -7,11 +7,9 @@
 
 #![warn(missing_docs, clippy::unwrap_used)]
 
-pub mod statistics;
+pub use common::{round, statistics};
 
 pub mod bootstrap;
-
-pub mod round;
 
 pub mod wave;
 

@@ -7,8 +7,8 @@ use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
 use super::arguments::{ResumeOptions, RunOptions};
-use super::manual;
 use super::update::UpdateOptions;
+use super::values::generated;
 use super::{
     accuracy, bench, calibrate, compare, draw, estimate, inspect, measure, page, report, reproduce,
     stress, suite, sweep,
@@ -35,6 +35,11 @@ Examples:
   sandbox list --settings
   sandbox list --schema > scenario.schema.json
 Editors use the schema where a scenario has the key \"$schema\": \"scenario.schema.json\".";
+
+const DRAW_EXAMPLES: &str = "\
+Examples:
+  sandbox draw scenarios/station.json -o station.png
+  sandbox draw evacuation.rrd -o evacuation.html";
 
 const GENERATE_EXAMPLES: &str = "\
 Examples:
@@ -84,7 +89,7 @@ pub enum Command {
     /// Draw a scenario, trajectories or a recording: as a picture, as an animation, or as a page that plays in any
     /// browser
     #[command(
-        after_help = "Examples:\n  sandbox draw scenarios/station.json -o station.png\n  sandbox draw evacuation.rrd -o evacuation.html"
+        after_help = DRAW_EXAMPLES
     )]
     Draw(draw::DrawOptions),
     /// Write the document that is handed in with a run or a study: plan, results with definitions, pictures, limits
@@ -179,7 +184,7 @@ pub enum Command {
     #[command(after_help = GENERATE_EXAMPLES)]
     Generate {
         /// A shell, or `man`
-        #[arg(value_parser = PossibleValuesParser::new(manual::names()))]
+        #[arg(value_parser = PossibleValuesParser::new(generated()))]
         what: String,
         /// With `man`: write the pages of the program and of all commands to this folder instead
         #[arg(long, value_name = "DIR")]

@@ -4,24 +4,14 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use clap::builder::PossibleValue;
 use clap::{CommandFactory, ValueEnum};
 use clap_complete::{Shell, generate};
 use clap_mangen::{Man, generate_to};
 
 use super::failure::Failure;
 use super::terminal::say;
+use super::values::MAN;
 use runs::outputs::{Manner, Outputs};
-
-/// The page in place of a shell.
-const MAN: &str = "man";
-
-/// What can be generated: scripts for shells, and the man page.
-pub fn names() -> Vec<PossibleValue> {
-    let shells = Shell::value_variants().iter();
-    let shells = shells.filter_map(ValueEnum::to_possible_value);
-    shells.chain([PossibleValue::new(MAN)]).collect()
-}
 
 /// `sandbox generate`.
 pub fn generated(what: &str, folder: Option<&Path>) -> Result<(), Failure> {

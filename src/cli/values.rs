@@ -4,7 +4,9 @@ use std::ops::RangeBounds;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::ValueEnum;
+use clap::builder::{PathBufValueParser, PossibleValue, TypedValueParser};
+use clap_complete::Shell;
 
 use super::failure::Failure;
 use analysis::crossing::{Line, Passages};
@@ -265,4 +267,14 @@ pub fn range(text: &str) -> Result<[f64; 2], &'static str> {
         }
         _ => Err("expected two numbers FROM,TO, the first less than the second"),
     }
+}
+
+/// The man page in place of a shell.
+pub const MAN: &str = "man";
+
+/// What `sandbox generate` makes: scripts for shells, and the man page.
+pub fn generated() -> Vec<PossibleValue> {
+    let shells = Shell::value_variants().iter();
+    let shells = shells.filter_map(ValueEnum::to_possible_value);
+    shells.chain([PossibleValue::new(MAN)]).collect()
 }

@@ -1,11 +1,11 @@
 //! Labels that do not cover each other, in pictures and in views of recordings.
 
-use crate::colors::Rgb;
 use crate::scenery::{self, GoalOf, brief};
 use engine::geometry::Walls;
 use engine::journeys::{Kind, Place};
 use engine::math::{Vector, bounds, direction, perpendicular};
 use engine::scene::Scene;
+use figures::colors::Rgb;
 use scenario::floor_plan::Label;
 
 /// Labels keep this distance from their points, points.

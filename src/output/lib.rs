@@ -1,16 +1,11 @@
-//! Output: HTML files and tables, Rerun recordings (the only module that names `rerun`), trajectories (SQLite, text and
-//! CSV), pictures and animations (SVG, PNG, PDF, GIF, APNG and video; the only module that names `plotters`), pages
-//! that play a run in a browser, and documents.
+//! Output: Rerun recordings (the only module that names `rerun`), trajectories (SQLite, text and CSV), pictures of
+//! crowds, and pages that play a run in a browser. Figures, tables and documents are those of the crate `figures`.
 
 #![warn(missing_docs, clippy::unwrap_used)]
 
-pub mod html;
-
-pub mod table;
+pub use figures::{colors, document, html, plot, table};
 
 pub mod results;
-
-pub mod colors;
 
 pub mod scenery;
 
@@ -24,10 +19,6 @@ pub mod recording;
 
 pub mod trajectory;
 
-pub mod plot;
-
 pub mod picture;
 
 pub mod page;
-
-pub mod document;

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::html::{escape, facts};
-use crate::table::{Cell, Table};
+use figures::html::{escape, facts};
+use figures::table::{Cell, Table};
 use runs::drive::End;
 use runs::summary::{JourneyResult, PlaceResult};
 use scenario::measurements::Quantity;

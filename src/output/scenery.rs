@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::colors::Rgb;
 use analysis::round;
 use engine::agents::Agents;
 use engine::geometry::Ring;
@@ -10,6 +9,7 @@ use engine::journeys::{Kind, Place, Queue, Status, Trip, Zone};
 use engine::math::{Vector, bounds, direction, perpendicular};
 use engine::scene::{Goal, Group, Scene};
 use engine::simulation::Simulation;
+use figures::colors::Rgb;
 use scenario::floor_plan::Label;
 
 /// The color of zones.

@@ -1,10 +1,10 @@
 //! The time series of a run: of its crowd, and of its entrances and places.
 
-use crate::colors::Rgb;
 use crate::scenery;
 use engine::journeys::{Kind, Place, Status};
 use engine::scene::Scene;
 use engine::simulation::Simulation;
+use figures::colors::Rgb;
 
 /// The time series of the crowd: key, name and color.
 pub const CROWD: [(&str, &str, Rgb); 7] = [

@@ -8,7 +8,13 @@ use std::{env, fs, io};
 use sha2::{Digest, Sha256};
 
 /// The crates on which the result of a run depends.
-const CRATES: [&str; 4] = ["src/engine", "src/analysis", "src/scenario", "src/runs"];
+const CRATES: [&str; 5] = [
+    "src/common",
+    "src/engine",
+    "src/analysis",
+    "src/scenario",
+    "src/runs",
+];
 
 /// The versions of all dependencies.
 const LOCK: &str = "Cargo.lock";

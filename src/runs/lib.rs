@@ -5,13 +5,13 @@
 
 #![warn(missing_docs, clippy::unwrap_used)]
 
+pub use common::outputs;
+
 pub mod drive;
 
 pub mod identity;
 
 pub mod notes;
-
-pub mod outputs;
 
 pub mod checkpoint;
 

@@ -5,6 +5,7 @@
 //! turns within each repeat, so that other load on the machine affects all of them alike; ratios are taken turn by
 //! turn. Scenes run through the public API.
 
+mod benchmark;
 mod crowd;
 mod hall;
 mod office;
@@ -16,8 +17,9 @@ mod stages;
 mod threads;
 pub mod timing;
 
+pub use benchmark::{Benchmark, Measure};
 pub use crowd::Crowd;
-pub use plan::{Benchmark, Measure, Plan};
+pub use plan::Plan;
 pub use report::{Report, Timings, names};
 pub use skips::{SKIPS, Skip, everything};
 pub use stages::{Started, Stretch, begin};

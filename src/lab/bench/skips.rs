@@ -10,7 +10,8 @@ use serde::Serialize;
 use serde_json::json;
 
 use self::work::{Course, Work};
-use super::plan::{Benchmark, Plan};
+use super::benchmark::Benchmark;
+use super::plan::Plan;
 use super::report::Timings;
 use super::stages::{Started, begin, busiest};
 use crate::error::LabError;

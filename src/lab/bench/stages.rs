@@ -7,10 +7,11 @@ use std::time::Instant;
 use serde::Serialize;
 use serde_json::json;
 
+use super::benchmark::Benchmark;
 use super::crowd::Crowd;
 use super::hall;
 use super::office;
-use super::plan::{Benchmark, Plan};
+use super::plan::Plan;
 use super::report::Timings;
 use super::timing::{failed, ms_of, ms_per_frame, warmed};
 use crate::error::LabError;

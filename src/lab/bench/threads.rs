@@ -3,8 +3,9 @@
 use serde::Serialize;
 use serde_json::json;
 
+use super::benchmark::Benchmark;
 use super::crowd::Crowd;
-use super::plan::{Benchmark, Plan};
+use super::plan::Plan;
 use super::report::Timings;
 use super::timing::{alternate, going_on};
 use crate::error::LabError;

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::run::{Runs, StepRuns};
+use super::sample::Sample;
 use super::wanted::{Bound, IMO_RUNS, Sampling};
 use crate::error::LabError;
 use crate::sweep::number;
@@ -14,15 +15,6 @@ use runs::store::Store;
 
 /// IMO's number of runs of each population, where these differ.
 const REPETITIONS: usize = 5;
-
-/// The runs of IMO's guidelines.
-#[derive(Debug, Clone)]
-pub struct Sample {
-    /// The results; the error message of runs that failed.
-    pub results: Vec<Result<RunResult, String>>,
-    /// The number of runs of each population.
-    pub repetitions: usize,
-}
 
 /// A bound on most runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -104,7 +104,7 @@ pub struct Hope {
 impl Hope {
     /// As a goal whose value is 1; `None` if no spread is known, or if the error is asked for in the result's unit.
     pub fn goal(&self) -> Option<Goal> {
-        let means = self.prior.expected()?;
+        let means = Means::expected(&self.prior)?;
         let tolerance = self.tolerance;
         matches!(tolerance, Tolerance::Relative(_)).then_some(Goal { means, tolerance })
     }

@@ -11,8 +11,7 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::limit::{REFERENCE_STEP, SIZES};
-use super::series::Means;
+use super::limit::SIZES;
 use analysis::statistics::MeanStd;
 use scenario::input::embedded;
 
@@ -54,7 +53,7 @@ pub struct Known {
 
 /// What a result is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Quantity {
+pub(super) enum Quantity {
     Density,
     Flow,
     Speed,
@@ -63,7 +62,7 @@ enum Quantity {
 
 impl Quantity {
     /// By the name of a result, which has its quantity or unit.
-    fn of(result: &str) -> Option<Self> {
+    pub(super) fn of(result: &str) -> Option<Self> {
         let has = |words: &[&str]| words.iter().any(|word| result.contains(word));
         match () {
             () if has(&["std", "highest", "at_end"]) => None,
@@ -79,42 +78,6 @@ impl Quantity {
 /// The results that ship with the program.
 static SHIPPED: LazyLock<Vec<Known>> =
     LazyLock::new(|| embedded("knowledge.json", include_str!("knowledge.json")));
-
-impl Known {
-    /// From the runs of a result; `None` if its value or its spread is 0, or if its name says no quantity.
-    pub fn of([scene, profile]: &[String; 2], result: &str, means: &Means) -> Option<Self> {
-        Quantity::of(result)?;
-        let levels = &means.levels;
-        let runs: f64 = levels.iter().map(|level| level.runs as f64).sum();
-        let mean = |of: &dyn Fn(usize) -> f64| -> f64 {
-            let parts = levels.iter().enumerate();
-            parts
-                .map(|(k, level)| level.runs as f64 * of(k))
-                .sum::<f64>()
-                / runs
-        };
-        let x = |k: usize| levels[k].step / REFERENCE_STEP;
-        let (middle, value) = (mean(&x), mean(&|k| levels[k].mean));
-        let square = mean(&|k| (x(k) - middle).powi(2));
-        let product = mean(&|k| (x(k) - middle) * (levels[k].mean - value));
-        let own = means.variance.sqrt();
-        let limit = value - middle * if square > 0.0 { product / square } else { 0.0 };
-        let known = Self {
-            scene: scene.clone(),
-            profile: profile.clone(),
-            result: result.to_owned(),
-            spread: own / limit.abs(),
-            degrees: means.own_degrees,
-            error: if square > 0.0 {
-                product / square / own
-            } else {
-                0.0
-            },
-            error_std: (square > 0.0).then(|| 1.0 / (runs * square).sqrt()),
-        };
-        (known.spread > 0.0 && known.spread.is_finite()).then_some(known)
-    }
-}
 
 /// What is known about a result before its first run.
 #[derive(Debug, Clone, PartialEq)]
@@ -169,16 +132,9 @@ impl Prior {
         }
     }
 
-    /// The means before the first run, of a result whose value is 1; `None` if no spread is known.
-    pub fn expected(&self) -> Option<Means> {
-        let (spread, degrees) = self.spread?;
-        Some(Means {
-            levels: Vec::new(),
-            variance: spread * spread,
-            degrees,
-            own_degrees: 0.0,
-            prior: self.clone(),
-        })
+    /// The standard deviation of runs as a part of the value, and its degrees of freedom, if known.
+    pub(super) fn spread(&self) -> Option<(f64, f64)> {
+        self.spread
     }
 
     /// The variance of single runs and its degrees of freedom, from a sum of squared deviations with these degrees and

@@ -4,11 +4,11 @@ use std::time::Instant;
 
 use rayon::current_num_threads;
 
-use super::bounds::Sample;
 use super::costs::Timed;
 use super::plan::{Goal, Offer, further};
 use super::prior::{Known, Prior};
 use super::question::{Question, Rung};
+use super::sample::Sample;
 use super::series::{Means, Reached, Series};
 use crate::error::LabError;
 use crate::jobs::each;

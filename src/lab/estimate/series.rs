@@ -84,6 +84,18 @@ impl Series {
 }
 
 impl Means {
+    /// The means before the first run, of a result whose value is 1; `None` if no spread is known.
+    pub fn expected(prior: &Prior) -> Option<Self> {
+        let (spread, degrees) = prior.spread()?;
+        Some(Self {
+            levels: Vec::new(),
+            variance: spread * spread,
+            degrees,
+            own_degrees: 0.0,
+            prior: prior.clone(),
+        })
+    }
+
     /// The half width of a confidence interval, in standard errors.
     pub fn width(&self, confidence: f64) -> f64 {
         student((self.degrees as usize).max(1), confidence).unwrap_or(f64::INFINITY)

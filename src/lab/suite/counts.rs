@@ -1,7 +1,8 @@
 //! How many values are as expected: by kind of case, and by whether they were fitted.
 
 use super::check::Judgment;
-use super::report::{Finding, Report};
+use super::finding::{Finding, is_fitted};
+use super::report::Report;
 use crate::gallery::distinct;
 use output::table::Table;
 
@@ -10,12 +11,6 @@ struct Line {
     name: String,
     /// For each profile, how many values are as expected, and of how many.
     counts: Vec<[usize; 2]>,
-}
-
-/// Whether the profile was fitted to the value of this check.
-pub fn is_fitted(finding: &Finding, check: usize) -> bool {
-    let check = finding.case.checks.get(check);
-    check.is_some_and(|check| check.fitted.contains(&finding.profile))
 }
 
 impl Report<'_> {

@@ -1,7 +1,7 @@
 //! The picture of all values: how far each is from the measured one.
 
-use super::counts::is_fitted;
-use super::report::{Finding, Report};
+use super::finding::{Finding, is_fitted};
+use super::report::Report;
 use crate::gallery::BAND;
 use output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
 

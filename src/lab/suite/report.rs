@@ -4,46 +4,15 @@ use serde_json::{Value, json};
 
 use super::changed::Changed;
 use super::check::Judgment;
-use super::counts::is_fitted;
 use super::file::Suite;
+use super::finding::{Finding, Skipped, THROUGH_WALLS, is_fitted};
 use super::keys::Case;
-use super::status::Passed;
+use super::passed::Passed;
 use crate::error::LabError;
 use analysis::statistics::Range;
 use output::document::{Block, Document, Findings};
 use output::plot::Sheet;
 use output::table::Table;
-
-/// The name of the check of walls.
-pub const THROUGH_WALLS: &str = "people through walls";
-
-/// The checks of one case with one profile and seed.
-#[derive(Clone)]
-pub struct Finding<'a> {
-    /// The case.
-    pub case: &'a Case,
-    /// The profile.
-    pub profile: String,
-    /// The seed; `None` for means over seeds.
-    pub seed: Option<u64>,
-    /// The judgments of its checks.
-    pub checks: Vec<Judgment>,
-}
-
-impl Finding<'_> {
-    /// Whether all values are as expected.
-    pub fn is_passed(&self) -> bool {
-        self.checks.iter().all(Judgment::is_passed)
-    }
-}
-
-/// A case whose data are missing.
-pub struct Skipped<'a> {
-    /// The case.
-    pub case: &'a Case,
-    /// The reason, and the source of the data.
-    pub why: String,
-}
 
 /// All findings.
 pub struct Report<'a> {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::passed::Passed;
 use super::report::Report;
 use scenario::input;
 
@@ -16,28 +17,6 @@ pub struct Status {
     pub suite: String,
     /// The results of each profile.
     pub profiles: BTreeMap<String, Passed>,
-}
-
-/// What a profile passes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Passed {
-    /// The number of cases.
-    pub cases: usize,
-    /// The number of cases that it passes.
-    pub passed: usize,
-    /// The cases that it misses.
-    pub missed: Vec<String>,
-    /// The number of values that are compared with measured ones, those within the tolerance first.
-    pub values: [usize; 2],
-    /// Those of these values to which the profile was fitted.
-    #[serde(default, skip_serializing_if = "none")]
-    pub fitted: [usize; 2],
-}
-
-/// Whether nothing is counted.
-fn none([_, all]: &[usize; 2]) -> bool {
-    *all == 0
 }
 
 impl Status {

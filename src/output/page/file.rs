@@ -10,7 +10,7 @@ use miniz_oxide::deflate::compress_to_vec;
 use serde_json::Value;
 
 use super::block::Block;
-use crate::html;
+use figures::html;
 
 /// The most parts that wait; the run waits when there are more.
 const QUEUE: usize = 1;

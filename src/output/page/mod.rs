@@ -20,12 +20,12 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::colors::ColorMap;
-use crate::html::{self, Head, escape};
 use crate::picture::Picture;
 use crate::scenery;
 use block::Block;
 use engine::math::Vector;
+use figures::colors::ColorMap;
+use figures::html::{self, Head, escape};
 use file::{PageFile, Part};
 use plan::{hex, millimeters};
 

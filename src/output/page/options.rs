@@ -1,10 +1,10 @@
 //! The content of a page beside its frames.
 
-use crate::colors::Rgb;
 use crate::recording::force_terms;
 use crate::scenery;
 use crate::series::{self, CROWD, Count};
 use engine::scene::{Group, Scene};
+use figures::colors::Rgb;
 
 /// The plots of the first time series of [`CROWD`]; a page has neither energies nor computing times.
 const PLOTS: [&str; 5] = [

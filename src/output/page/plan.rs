@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use crate::colors::{ColorMap, Rgb};
-use crate::plot::{Mark, Style};
 use analysis::round;
 use engine::math::Vector;
+use figures::colors::{ColorMap, Rgb};
+use figures::plot::{Mark, Style};
 
 /// The number of colors of a bar.
 const COLORS: u16 = 256;

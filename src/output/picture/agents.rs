@@ -2,11 +2,11 @@
 
 use super::paths::{BORDER, LEAST_WAIT, waited};
 use super::{Coloring, Field, Frame, Picture, xy};
-use crate::colors::Rgb;
-use crate::plot::{BLACK, Disc, Mark, Style, label_lines};
 use crate::scenery::WALKING;
 use engine::journeys::Status;
 use engine::simulation::Simulation;
+use figures::colors::Rgb;
+use figures::plot::{BLACK, Disc, Mark, Style, label_lines};
 
 /// The color of agents in pictures of ways, and of those without a value.
 pub const FAINT: Rgb = [150, 154, 162];

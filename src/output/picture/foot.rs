@@ -2,8 +2,8 @@
 
 use super::agents::{self, Entry};
 use super::{Frame, MARGIN, Picture, TEXT_HEIGHT, scene};
-use crate::plot::{Mark, label_width};
 use analysis::round;
+use figures::plot::{Mark, label_width};
 
 /// The height of a single row, points.
 const ROW: f64 = 22.0;

@@ -1,10 +1,10 @@
 //! Walls, colored by the force on them.
 
 use super::xy;
-use crate::colors::WALL_FORCE;
-use crate::plot::{ColorBar, Mark, Style};
 use analysis::wall_forces::Outlines;
 use engine::simulation::Simulation;
+use figures::colors::WALL_FORCE;
+use figures::plot::{ColorBar, Mark, Style};
 
 /// The parts of walls with a force on them, colored by the force on 1 m.
 pub fn marks(simulation: &Simulation, body_mass: f64) -> Vec<Mark> {

@@ -12,16 +12,16 @@ mod scene;
 pub use crowd::{Crowd, Trails};
 pub use paths::Paths;
 
-use crate::colors::{ColorMap, Rgb};
 use crate::labels::{Labels, Placed, Screen, along_lines};
-use crate::plot::{
-    Axis, Cells, ColorBar, LABEL_SIZE, Label as Text, Mark, Panel, PlotError, Print, Sheet, Style,
-    label_width,
-};
 use crate::scenery;
 use engine::math::{Vector, bounds};
 use engine::scene::{Region, Scene};
 use engine::simulation::Simulation;
+use figures::colors::{ColorMap, Rgb};
+use figures::plot::{
+    Axis, Cells, ColorBar, LABEL_SIZE, Label as Text, Mark, Panel, PlotError, Print, Sheet, Style,
+    label_width,
+};
 use scenario::floor_plan::Label;
 use scenario::measurements::Observed;
 

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use super::{Frame, xy};
-use crate::colors::{ColorMap, Rgb, WAIT};
-use crate::plot::{BLACK, Cells, ColorBar, Mark, Style};
 use analysis::way_field::{Grid, WayField};
 use engine::math::{Vector, direction, perpendicular};
 use engine::simulation::Simulation;
 use engine::ways::{Destination, Ways};
+use figures::colors::{ColorMap, Rgb, WAIT};
+use figures::plot::{BLACK, Cells, ColorBar, Mark, Style};
 
 /// The side of a cell of the field, points.
 const CELL: f64 = 0.5;

@@ -1,11 +1,11 @@
 //! The regions and lines that measurements observe.
 
 use super::xy;
-use crate::colors::Rgb;
 use crate::labels::{Labels, around};
-use crate::plot::{Mark, Style};
 use crate::scenery;
 use engine::scene::Scene;
+use figures::colors::Rgb;
+use figures::plot::{Mark, Style};
 use scenario::measurements::Observed;
 
 /// Their color.

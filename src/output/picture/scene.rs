@@ -1,14 +1,14 @@
 //! The marks of a scene: ground, walls, places, zones, sources and goals.
 
 use super::{Frame, Picture, dark, xy};
-use crate::colors::{Rgb, light};
 use crate::labels::{self, AROUND, Labels, around, of_place};
-use crate::plot::{BLACK, Mark, Style};
 use crate::scenery::{self, ZONE};
 use engine::agents::Agents;
 use engine::journeys::Kind;
 use engine::math::Vector;
 use engine::scene::{Region, Scene};
+use figures::colors::{Rgb, light};
+use figures::plot::{BLACK, Mark, Style};
 
 const FLOOR: Rgb = [252, 252, 249];
 const OUTSIDE: Rgb = [222, 222, 217];

@@ -7,9 +7,9 @@ use rerun::{
 };
 
 use super::error::Cause;
-use crate::colors::Rgb;
 use analysis::way_field::Grid;
 use engine::math::Vector;
+use figures::colors::Rgb;
 
 /// A place, meters.
 pub type Point = [f32; 2];

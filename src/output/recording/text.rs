@@ -10,11 +10,11 @@ use super::debug::DebugAgents;
 use super::debug::arrows;
 use super::error::Cause;
 use super::options::RecordingOptions;
-use crate::colors::WALL_FORCE_RANGE;
 use crate::scenery;
 use analysis::round::brief;
 use engine::profile::Term;
 use engine::scene::Scene;
+use figures::colors::WALL_FORCE_RANGE;
 
 pub const DOCUMENT: &str = "info/scenario";
 /// The results of the run, for people; and as JSON, which no view shows.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::error::Cause;
 use super::{Row, Sink};
-use crate::table::csv_lines;
+use figures::table::csv_lines;
 
 /// Lines per parallel task.
 const SOME: usize = 1024;

@@ -1,5 +1,6 @@
 //! Errors in floor plans.
 
+use crate::error::Problem;
 use crate::error::quote::{shown, shown_message};
 use std::path::PathBuf;
 
@@ -67,5 +68,16 @@ fn at(place: &str) -> String {
     match place {
         "" => String::new(),
         place => format!("{}: ", shown(place)),
+    }
+}
+
+/// The place of an error becomes the path if it is an index.
+impl From<FloorPlanError> for Problem {
+    fn from(error: FloorPlanError) -> Self {
+        match error {
+            FloorPlanError::Geometry { place, reason } => Self::new(place, reason),
+            FloorPlanError::EmptyGeometry(place) => Self::new(place, "has no rings"),
+            other => Self::new("", other.to_string()),
+        }
     }
 }

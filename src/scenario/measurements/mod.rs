@@ -4,6 +4,7 @@
 //! ([`Measure`]). [`Measurement`] lists them all. Times are rounded to the nearest frame, so that every measurement is
 //! due at any time step.
 
+mod aim;
 mod arrivals;
 mod body_forces;
 mod closest;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::stuck::Aim;
+use super::aim::Aim;
 use engine::journeys::Kind;
 use engine::math::Vector;
 use engine::scene::Scene;

@@ -8,10 +8,11 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::aim::Aim;
 use super::lines::{Lines, Outside};
 use super::passages::{Crossing, Known, Openings};
 use super::standing::{is_slow, length};
-use super::stuck::{Aim, Headway};
+use super::stuck::Headway;
 use crate::error::quote::{shown, to_centimeters};
 use analysis::service;
 use analysis::statistics::Range;

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use crate::error::{Problem, Under, in_plain_words};
 use crate::file::{File, meant, range};
+use crate::keys::limits::MOST_NUMBERED;
 use crate::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE};
 use crate::keys::people::{Behavior, People};
 use crate::keys::profiles::{ProfileChoice, ProfileName};
@@ -17,11 +18,11 @@ use crate::read::draft::{Draft, Inputs};
 use crate::read::scenario::Scenario;
 use crate::read::{curves, data, late, plans, preset};
 use crate::scene::need::Need;
-use crate::scene::people::{MOST_NUMBERED, Population};
+use crate::scene::people::Population;
 use crate::scene::surroundings::Surroundings;
 use crate::scene::{
     doubts, journeys, numerics, off_floor, overcrowded, periodic, profiles, slits, surroundings,
-    view, ways,
+    view, ways, widest,
 };
 use crate::trajectories::Tracks;
 use crate::{file, measurements};
@@ -180,7 +181,7 @@ impl Draft {
             document: self.document,
             files: self.plans,
             notes,
-            passage_width: ways::passable(&items.origins(keys, &scene)),
+            passage_width: widest::passable(&items.origins(keys, &scene)),
             scene,
         })
     }

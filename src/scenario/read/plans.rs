@@ -9,7 +9,7 @@ use crate::error::quote::shown;
 use crate::floor_plan;
 use crate::floor_plan::{FloorPlan, Label};
 use crate::read::setting::Setting;
-use crate::scene::surroundings::{OBSTACLES, WALKABLE_AREA, problem};
+use crate::scene::surroundings::{OBSTACLES, WALKABLE_AREA};
 use engine::geometry::{Area, Ring};
 
 /// The keys that may name a file.
@@ -56,7 +56,7 @@ pub fn fill(
             return Err(Problem::new(key, reason));
         }
         let path = folder.join(name);
-        let plan: FloorPlan = read(&path).map_err(|error| problem(error).under(key))?;
+        let plan: FloorPlan = read(&path).map_err(|error| Problem::from(error).under(key))?;
         files.push((key, path));
         let read = plan.notes.iter();
         notes.extend(read.map(|note| format!("{key}: {}: {note}", shown(name))));

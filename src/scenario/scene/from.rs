@@ -2,8 +2,8 @@
 
 use crate::error::{Problem, Under};
 use crate::keys::from::{FROM, FromData, Person};
-use crate::scene::goals::Target;
 use crate::scene::people::Population;
+use crate::scene::target::Target;
 use engine::agents::NewAgent;
 use engine::entrance::Latecomer;
 

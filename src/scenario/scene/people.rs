@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::error::{Problem, Under};
 use crate::file::File;
+use crate::keys::limits::MOST_NUMBERED;
 use crate::keys::people;
 use crate::keys::people::{Behavior, People};
 use crate::keys::profiles::ProfileChoice;
 use crate::keys::shapes::{Corners, Point, region};
 use crate::scene::draws::traits;
-use crate::scene::goals::Target;
 use crate::scene::origin::{Item, Items};
+use crate::scene::target::Target;
 use crate::scene::{overlaps, profiles};
 use engine::agents::NewAgent;
 use engine::math::Vector;
@@ -19,9 +20,6 @@ use engine::placement::Grid;
 use engine::profile::Blend;
 use engine::scene::{Group, Region, Scene, Source};
 use engine::traits::Traits;
-
-/// Most groups or pushes: their numbers have 16 bits.
-pub const MOST_NUMBERED: usize = u16::MAX as usize;
 
 /// Most different profiles defined in full: each takes its own sum over all agents.
 const MOST_CUSTOM: usize = 1_000;

@@ -3,7 +3,6 @@
 use crate::error::Problem;
 use crate::file::File;
 use crate::floor_plan::FloorPlan;
-use crate::scene::surroundings;
 use engine::agents::Agents;
 use engine::geometry::Polygon;
 use engine::math::{Vector, bounds};
@@ -87,7 +86,7 @@ pub fn bodies(rings: &Rings, period: &Period) -> Result<Vec<Polygon>, Problem> {
             .collect(),
     };
     let polygons = areas
-        .map_err(surroundings::problem)?
+        .map_err(Problem::from)?
         .into_iter()
         .map(Polygon::filling);
     polygons

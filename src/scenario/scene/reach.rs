@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::error::Problem;
 use crate::error::quote::{shown, to_centimeters};
-use crate::scene::bodies::{Maps, described};
+use crate::scene::maps::{Maps, described};
 use crate::scene::slits;
 use crate::scene::ways::{Prepared, To};
 use engine::journeys::{Choice, JourneyStage};

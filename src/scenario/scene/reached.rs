@@ -2,9 +2,8 @@
 
 use crate::error::Problem;
 use crate::error::quote::{shown, to_centimeters};
-use crate::scene::bodies::{SIDEWAYS, Widest};
 use crate::scene::origin::Origins;
-use crate::scene::ways::passable;
+use crate::scene::widest::{SIDEWAYS, Widest, passable};
 use engine::geometry::{LineAmongWalls, Walls};
 use engine::journeys::{Kind, Place};
 use engine::math::Vector;

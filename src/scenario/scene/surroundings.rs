@@ -2,7 +2,7 @@
 
 use crate::error::{Problem, Under};
 use crate::file::File;
-use crate::floor_plan::{FloorPlan, FloorPlanError};
+use crate::floor_plan::FloorPlan;
 use crate::keys::shapes::{Outline, Point, Ring as GivenRing};
 use crate::scene::openings::{BEHIND, Door, OVERLAP, Opening, WIDE_AT, openings};
 use crate::scene::periodic;
@@ -41,7 +41,7 @@ pub fn without_effect(file: &File) -> Result<Vec<String>, Problem> {
         .chain(bodies)
         .map(polygon)
         .collect::<Result<_, Problem>>()?;
-    FloorPlan::without_effect(polygons.into_iter()).map_err(problem)
+    FloorPlan::without_effect(polygons.into_iter()).map_err(Problem::from)
 }
 
 /// What surrounds people.
@@ -101,11 +101,11 @@ fn walls_round(
         let copies = rings(polygon).and_then(|rings| periodic::copies(&rings, period));
         given.extend(copies.under(&format!("[{k}]"))?);
     }
-    let mut plan = FloorPlan::walkable(&given).map_err(problem)?;
+    let mut plan = FloorPlan::walkable(&given).map_err(Problem::from)?;
     let openings = openings(&plan.walkable, doors);
     if !openings.is_empty() {
         given.extend(openings.iter().map(|opening| vec![opening.ring(-OVERLAP)]));
-        plan = FloorPlan::walkable(&given).map_err(problem)?;
+        plan = FloorPlan::walkable(&given).map_err(Problem::from)?;
     }
     Ok(Surroundings {
         solids: plan
@@ -117,7 +117,7 @@ fn walls_round(
 
 /// An area from its outline and holes.
 pub fn area(given: &[GivenRing]) -> Result<Area, Problem> {
-    let area = FloorPlan::obstacle(&rings(given)?).map_err(problem)?;
+    let area = FloorPlan::obstacle(&rings(given)?).map_err(Problem::from)?;
     match Polygon::filling(area.clone()) {
         Ok(_) => Ok(area),
         Err(error) => Err(Problem::new("", error.to_string())),
@@ -132,7 +132,7 @@ fn obstacle(given: &Outline, period: Option<&Period>) -> Result<Vec<Polygon>, Pr
     let polygon = match given {
         Outline::Ring(ring) => Polygon::new(points(ring)?.into_iter().map(Into::into).collect()),
         Outline::Rings(given) => {
-            let area = FloorPlan::obstacle(&rings(given)?).map_err(problem)?;
+            let area = FloorPlan::obstacle(&rings(given)?).map_err(Problem::from)?;
             Polygon::filling(area)
         }
     };
@@ -154,13 +154,4 @@ fn points(GivenRing(ring): &GivenRing) -> Result<Vec<[f64; 2]>, Problem> {
         return Err(Problem::new("", reason));
     }
     Ok(ring.iter().map(|&Point(point)| point).collect())
-}
-
-/// Converts an error; its place becomes the path if it is an index.
-pub fn problem(error: FloorPlanError) -> Problem {
-    match error {
-        FloorPlanError::Geometry { place, reason } => Problem::new(place, reason),
-        FloorPlanError::EmptyGeometry(place) => Problem::new(place, "has no rings"),
-        other => Problem::new("", other.to_string()),
-    }
 }

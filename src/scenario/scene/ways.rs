@@ -8,11 +8,11 @@ use crate::error::quote::shown;
 use crate::file::File;
 use crate::floor_plan::{Rings, free, outlines};
 use crate::keys::goals::WayFinding;
-use crate::scene::bodies::Widest;
 use crate::scene::doors;
 use crate::scene::origin::{Items, Member, Origins};
 use crate::scene::places;
 use crate::scene::reached::{Distances, Reached};
+use crate::scene::widest::{Widest, passable};
 use engine::agents::RADIUS_RANGE;
 use engine::entrance::Latecomer;
 use engine::geometry::Area;
@@ -154,17 +154,6 @@ pub fn floor(scene: &Scene, width: f64) -> Result<Ways, Problem> {
 
 fn floor_of(scene: &Scene, starts: &[Start], width: f64) -> Result<Floor, Problem> {
     Floor::new(&areas(scene, starts)?, width).map_err(unusable)
-}
-
-/// The width below which agents take no passage, meters; `None`: they walk straight.
-pub fn passable(origins: &Origins) -> Option<f64> {
-    let keys = origins.keys;
-    let least = || {
-        let widest = Widest::all(origins.scene, origins).into_iter();
-        widest.map(|widest| widest.alone).fold(0.0, f64::max)
-    };
-    let finds = keys.navigation == WayFinding::Paths;
-    finds.then(|| keys.min_passage_width.unwrap_or_else(least))
 }
 
 /// The goals that may need path maps: all of them.

@@ -3,11 +3,11 @@
 use rerun::{Arrows2D, Points2D, Radius};
 
 use super::Open;
-use crate::colors::{self, Rgb};
 use crate::recording::draw::{color as rgb, xy};
 use engine::math::{Vector, direction};
 use engine::profile::Term;
 use engine::scene::Scene;
+use figures::colors::{self, Rgb};
 
 /// The growth of an arrow's length per factor of ten of a large acceleration, meters.
 const PER_DECADE: f64 = 0.6;

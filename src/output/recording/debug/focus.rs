@@ -18,12 +18,12 @@ use rerun::{
 use super::Open;
 use super::arrows::{self, TOTAL};
 use super::layers::{HIDDEN, LINK, NEAREST, REPRESENTATIVE, WAY};
-use crate::colors::Rgb;
 use crate::recording::draw::{Point, color, px, texts, xy, y_up};
 use crate::recording::error::Cause;
 use engine::math::Vector;
 use engine::profile::Term;
 use engine::scene::Region;
+use figures::colors::Rgb;
 
 /// Half the side of the view around an agent, meters.
 pub const REACH: f64 = 2.5;

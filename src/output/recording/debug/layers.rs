@@ -3,12 +3,12 @@
 use rerun::{Arrows2D, AsComponents, Ellipses2D, LineStrips2D, Points2D, RecordingStream};
 
 use super::{DebugAgents, Open, arrows};
-use crate::colors::Rgb;
 use crate::recording::draw::{Point, color, px, xy};
 use crate::recording::error::Cause;
 use engine::boundary::WallMethod;
 use engine::math::Vector;
 use engine::scene::Scene;
+use figures::colors::Rgb;
 
 /// With more debug agents than this, labels would hide everything; a click still shows an agent's id.
 const MOST_LABELS: usize = 40;

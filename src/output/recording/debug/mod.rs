@@ -7,13 +7,13 @@ pub mod layers;
 pub mod moment;
 
 use super::draw::{Point, xy};
-use crate::colors::Rgb;
 use engine::breakdown::Breakdown;
 use engine::geometry::HiddenRegion;
 use engine::math::Vector;
 use engine::profile::Term;
 use engine::scene::{Region, Scene};
 use engine::simulation::Simulation;
+use figures::colors::Rgb;
 
 /// Number of segments of an arc in the outline of a hidden region.
 const ARC_STEPS: usize = 24;

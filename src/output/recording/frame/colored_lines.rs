@@ -5,11 +5,11 @@ use std::sync::LazyLock;
 
 use rerun::{LineStrips2D, RecordingStream, Scalars};
 
-use crate::colors::{ColorMap, LEAN, Rgb, WAIT, WALL_FORCE};
 use crate::recording::draw::{Point, color, log_series, px, xy};
 use crate::recording::error::Cause;
 use analysis::wall_forces::Outlines;
 use engine::simulation::Simulation;
+use figures::colors::{ColorMap, LEAN, Rgb, WAIT, WALL_FORCE};
 
 /// A line with its value.
 pub type Part = ([Point; 2], f32);

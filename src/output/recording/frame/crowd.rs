@@ -10,10 +10,10 @@ use rerun::external::arrow::datatypes::{ArrowPrimitiveType, Float16Type};
 use rerun::{AsComponents, Color, DynamicArchetype, Points2D, Radius, RecordingStream};
 
 use super::Snapshot;
-use crate::colors::ColorMap;
 use crate::recording::draw::color;
 use crate::recording::error::Cause;
 use crate::recording::options::RecordingOptions;
+use figures::colors::ColorMap;
 
 type F16 = <Float16Type as ArrowPrimitiveType>::Native;
 

@@ -9,12 +9,12 @@ use rerun::{EntityPath, RecordingStream};
 
 use super::debug::{DebugAgents, Open};
 use super::draw::{Point, xy};
-use crate::colors::Rgb;
 use crate::events::Line;
 use crate::scenery::stage_color;
 use colored_lines::{ColoredLines, LEANS, Part, WAITS};
 use engine::math::Vector;
 use engine::simulation::Simulation;
+use figures::colors::Rgb;
 
 /// The timelines.
 pub const FRAME: &str = "frame";

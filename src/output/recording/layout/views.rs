@@ -11,11 +11,11 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::{AsComponents, EntityPath, Points2D};
 
 use super::Content;
-use crate::colors::Rgb;
 use crate::recording::draw::color;
 use crate::recording::frame::crowd;
 use crate::recording::scene::obstacles;
 use engine::scene::Region;
+use figures::colors::Rgb;
 
 /// Color of the crowd where it is only the background.
 const DIM: Rgb = [72, 77, 95];

@@ -2,13 +2,13 @@
 
 use rerun::{AsComponents, Image, LineStrips2D, RecordingStream, Transform3D};
 
-use crate::colors::{ColorMap, Rgb};
 use crate::recording::draw::{color, px, texts};
 use crate::recording::error::Cause;
 use crate::recording::frame::crowd::Maps;
 use analysis::round;
 use engine::math::Vector;
 use engine::scene::Region;
+use figures::colors::{ColorMap, Rgb};
 
 /// The entities of the bars.
 pub const DENSITY: &str = "world/legend/density";

@@ -3,7 +3,6 @@
 use rerun::RecordingStream;
 
 use super::names::Names;
-use crate::colors::Rgb;
 use crate::recording::draw::{Look, log_lines};
 use crate::recording::error::Cause;
 use crate::recording::options::RecordingOptions;
@@ -11,6 +10,7 @@ use crate::scenery::{self, closed, named};
 use analysis::crossing::Line;
 use engine::math::Vector;
 use engine::scene::{Region, Scene};
+use figures::colors::Rgb;
 
 const SOURCE: Look = ([0, 170, 200], 1.0, 3.0);
 const PUSH: Look = ([230, 110, 90], 1.0, 3.0);

@@ -12,7 +12,6 @@ use rerun::{Points2D, RecordingStream};
 use super::draw::{color, log_lines, px, xy, y_up};
 use super::error::Cause;
 use super::options::RecordingOptions;
-use crate::colors::Rgb;
 use crate::labels;
 use crate::scenery::{self, closed};
 use engine::agents::Agents;
@@ -21,6 +20,7 @@ use engine::math::bounds;
 use engine::period::Axis;
 use engine::scene::{Region, Scene};
 use engine::simulation::Simulation;
+use figures::colors::Rgb;
 use names::Names;
 
 const WALL: Rgb = [214, 214, 222];

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use rerun::{AsComponents, LineStrips2D, RecordingStream};
 
 use super::bars;
-use crate::colors::Rgb;
 use crate::labels::{self, Labels, Placed, Screen, Spot, along_lines, along_walls};
 use crate::recording::arrangement::Arrangement;
 use crate::recording::draw::{color, px, texts, xy};
@@ -13,6 +12,7 @@ use crate::recording::error::Cause;
 use engine::geometry::Walls;
 use engine::math::Vector;
 use engine::scene::{Region, Scene};
+use figures::colors::Rgb;
 use scenario::floor_plan::Label;
 
 /// The usual width of a letter, and what a label has beside its text, pixels.

@@ -2,12 +2,12 @@
 
 use rerun::{RecordingStream, Rgba32};
 
-use crate::colors::Rgb;
 use crate::recording::draw::log_classes;
 use crate::recording::error::Cause;
 use analysis::way_field::Grid;
 use engine::geometry::Polygon;
 use engine::math::{Vector, bounds};
+use figures::colors::Rgb;
 
 /// The entity of the image.
 pub const ENTITY: &str = "world/geometry/obstacles";

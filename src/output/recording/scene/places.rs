@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use rerun::{Points2D, Radius, RecordingStream};
 
 use super::names::Names;
-use crate::colors::Rgb;
 use crate::recording::draw::{color, log_lines, xy};
 use crate::recording::error::Cause;
 use crate::{labels, scenery};
 use engine::journeys::Kind;
 use engine::math::Vector;
 use engine::scene::Scene;
+use figures::colors::Rgb;
 
 /// The color of entrances.
 const ENTRANCE: Rgb = [0, 170, 200];

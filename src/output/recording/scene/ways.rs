@@ -2,7 +2,6 @@
 
 use rerun::{EntityPath, RecordingStream, Rgba32, entity_path};
 
-use crate::colors::ColorMap;
 use crate::recording::draw::{Class, log_classes};
 use crate::recording::error::Cause;
 use analysis::round;
@@ -10,6 +9,7 @@ use analysis::way_field::{Grid, WayField};
 use engine::math::bounds;
 use engine::scene::Scene;
 use engine::ways::Destination;
+use figures::colors::ColorMap;
 
 /// The longest side of an image, pixels, and the smallest pixel, meters.
 const SIDE: f64 = 480.0;

@@ -1,6 +1,7 @@
 //! Why an agent makes no headway: a likely cause, from what lies between it and its goal.
 
-use super::{Aim, STUCK_AFTER, left};
+use super::super::aim::Aim;
+use super::{STUCK_AFTER, left};
 use crate::error::numbers::tidy;
 use crate::error::quote::shown;
 use crate::measurements::passages::Openings;

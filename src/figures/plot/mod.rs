@@ -8,6 +8,7 @@
 mod animation;
 mod axis;
 mod draw;
+mod error;
 mod font;
 mod ink;
 mod layout;
@@ -22,8 +23,8 @@ mod print;
 pub use animation::Animation;
 pub use axis::Axis;
 pub use draw::{label_lines, label_width};
+pub use error::PlotError;
 pub use font::{LINE, lines as text_lines, take_lacked, width_of as text_width};
-pub use output::PlotError;
 pub use pages::Pages;
 pub use print::{PAPER_DPI, Print};
 

@@ -1,6 +1,6 @@
 //! The cells of tables.
 
-use analysis::statistics::{Estimate, MeanStd};
+use common::statistics::{Estimate, MeanStd};
 
 /// The content of a row in a column.
 #[derive(Debug, Clone, PartialEq)]

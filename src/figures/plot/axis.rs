@@ -1,7 +1,7 @@
 //! Axes.
 
 use super::font::width_of;
-use analysis::round;
+use common::round;
 
 /// The size of numbers and legends, points.
 pub const NUMBER: f64 = 8.0;

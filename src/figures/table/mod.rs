@@ -13,8 +13,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::html::escape;
-use analysis::statistics::Range;
 use cell::Format;
+use common::statistics::Range;
 
 #[derive(Debug, Clone, PartialEq)]
 struct Head {

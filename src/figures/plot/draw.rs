@@ -4,10 +4,10 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::axis::NUMBER;
+use super::error::Drawn;
 use super::font::{LINE, lines, width_of};
 use super::ink::{Ink, fill};
 use super::layout::{self, BAR_WIDTH, LABEL, Layout, PAD, SAMPLE, TICK, TITLE, height_of};
-use super::output::Drawn;
 use super::{
     Axis, BLACK, Cells, ColorBar, Corner, Mark, NO_DATA, Panel, Print, Sheet, Style, marks,
 };

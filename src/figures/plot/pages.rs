@@ -6,9 +6,10 @@ use std::convert::Infallible;
 use plotters::style::{Color, FontStyle, RGBColor, TextStyle};
 use plotters_backend::{DrawingBackend, DrawingErrorKind};
 
+use super::error::Drawn;
 use super::ink::Ink;
 use super::layout::Layout;
-use super::output::{Drawn, FINER};
+use super::output::FINER;
 use super::pdf::Pdf;
 use super::{PlotError, Print, Sheet, font};
 use crate::colors::Rgb;

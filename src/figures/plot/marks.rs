@@ -8,8 +8,8 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
+use super::error::{Drawn, PlotError};
 use super::ink::{Ink, fill};
-use super::output::{Drawn, PlotError};
 use super::{Cells, Disc, LABEL_SIZE, Label, Mark, NO_DATA, Panel, Style};
 use crate::colors::Rgb;
 

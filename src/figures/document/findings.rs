@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use super::{Block, Document, Figure};
 use crate::plot::{PlotError, Print};
 use crate::table::Table;
-use runs::outputs::write_file;
+use common::outputs::write_file;
 
 /// What a command found.
 #[derive(Debug, Clone)]

@@ -1,17 +1,17 @@
 //! Writes a sheet to files.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use image::{RgbImage, imageops};
-use plotters::drawing::DrawingAreaErrorKind;
 use plotters::prelude::*;
 
+use super::error::{Drawn, PlotError};
 use super::ink::Ink;
 use super::layout::Layout;
 use super::pdf::Pdf;
 use super::pixels::Pixels;
 use super::{Print, Sheet, draw, font};
-use runs::outputs::write_file;
+use common::outputs::write_file;
 
 /// Units per point in an SVG.
 const SVG_SCALE: u32 = 4;
@@ -19,55 +19,6 @@ const SVG_SCALE: u32 = 4;
 pub(super) const FINER: u32 = 2;
 /// The most pixels of a picture, before it is scaled down.
 const MOST_PIXELS: f64 = 400e6;
-
-/// A picture cannot be drawn or written.
-#[derive(Debug, thiserror::Error)]
-pub enum PlotError {
-    /// It cannot be drawn.
-    #[error("cannot draw: {0}")]
-    Drawing(String),
-    /// It would have too many pixels.
-    #[error("the picture would have {0} × {1} pixels; give a lower resolution or a smaller width")]
-    Large(u32, u32),
-    /// It cannot be written.
-    #[error("cannot write {}: {reason}", path.display())]
-    Writing {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        reason: std::io::Error,
-    },
-    /// There is no program that writes videos.
-    #[error(
-        "cannot write {}: videos need the program ffmpeg, which is not installed or not in PATH ({reason}); install \
-         it, or write an animation as .gif or .png",
-        path.display()
-    )]
-    NoFfmpeg {
-        /// The file.
-        path: PathBuf,
-        /// The system's message.
-        reason: String,
-    },
-}
-
-impl PlotError {
-    /// A file that cannot be written.
-    pub(super) fn writing(path: &Path, reason: impl Into<std::io::Error>) -> Self {
-        Self::Writing {
-            path: path.to_owned(),
-            reason: reason.into(),
-        }
-    }
-}
-
-pub type Drawn = Result<(), PlotError>;
-
-impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for PlotError {
-    fn from(error: DrawingAreaErrorKind<E>) -> Self {
-        Self::Drawing(error.to_string())
-    }
-}
 
 impl Sheet {
     /// Writes `stem`.svg and `stem`.png; for a paper, also `stem`.pdf. They are printed as [`Print::of_program`] says.

@@ -11,9 +11,10 @@ use gif::DisposalMethod;
 use image::RgbImage;
 
 use super::Print;
-use super::output::{PlotError, resolution};
+use super::error::PlotError;
+use super::output::resolution;
 use crate::colors::Rgb;
-use runs::outputs::Replacement;
+use common::outputs::Replacement;
 
 /// The most colors in a frame of a GIF, without the transparent one.
 const COLORS: usize = 255;
