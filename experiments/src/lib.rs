@@ -3,10 +3,10 @@
 //!
 //! | experiment | question | findings |
 //! |---|---|---|
-//! | [`domains`] | how would crowds divide among processes? | docs/scaling.md |
-//! | [`compare`] | how fast are other engines on the same crowds? | docs/performance.md |
-//! | [`symmetric`] | would sums that visit each pair once pay? | docs/performance.md |
-//! | [`walls`] | how accurate are the integrals over walls by this and other methods? | docs/accuracy.md |
+//! | [`domains`] | how would crowds divide among processes? | docs/findings/scaling.md |
+//! | [`compare`] | how fast are other engines on the same crowds? | docs/findings/performance.md |
+//! | [`symmetric`] | would sums that visit each pair once pay? | docs/findings/performance.md |
+//! | [`walls`] | how accurate are the integrals over walls by this and other methods? | docs/findings/accuracy.md |
 
 #![warn(clippy::unwrap_used)]
 

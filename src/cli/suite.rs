@@ -32,7 +32,7 @@ pub struct VerifyOptions {
     /// Only this case, such as 6, 12a, 12 or iso6; give it several times for several cases
     #[arg(long, value_name = "CASE")]
     pub only: Vec<String>,
-    /// A suite of your own: a study with `cases` (docs/validation.md) [default: the cases below]
+    /// A suite of your own: a study with `cases` (docs/guide/suites.md) [default: the cases below]
     #[arg(value_name = "SUITE.json")]
     pub file: Option<PathBuf>,
     #[command(flatten)]
@@ -42,7 +42,7 @@ pub struct VerifyOptions {
 #[derive(Args)]
 pub struct ValidateOptions {
     /// Only these scenes, such as gap-2.4 or door [default: all]; after SUITE.json those of a suite of your own: a
-    /// study with `cases` (docs/validation.md)
+    /// study with `cases` (docs/guide/suites.md)
     #[arg(value_name = "SUITE.json|SCENE")]
     pub scene: Vec<String>,
     #[command(flatten)]
@@ -52,7 +52,7 @@ pub struct ValidateOptions {
 #[derive(Args)]
 pub struct SuiteOptions {
     /// Folder with files of trajectories: scenes that begin from such a file are skipped without it
-    /// (docs/validation.md)
+    /// (docs/guide/suites.md)
     #[arg(long, value_name = "DIR")]
     pub data: Option<PathBuf>,
     /// This profile in place of the default ones (verify: sph, sf->sph, rvo->sph; validate: also walk+sph and
