@@ -3,7 +3,7 @@
 //! van Toll, Chatagnon, Braga, Solenthaler, Pettré: "SPH crowds: Agent-based crowd simulation up to extreme densities
 //! using fluid dynamics", Computers & Graphics 2021, <https://doi.org/10.1016/j.cag.2021.06.005>. Sections, equations
 //! and symbols are the paper's; units are meters, seconds and persons. A *reading* is a choice that the paper leaves
-//! open (docs/model.md). The engine computes the same, but faster: tests/paper.rs compares it with this file.
+//! open (docs/reference/model.md). The engine computes the same, but faster: tests/paper.rs compares it with this file.
 //!
 //! ```sh
 //! cargo run --release --example paper -- evacuation          # §6.1 with the profile sph

@@ -46,7 +46,8 @@
 //! module cli. A layer
 //! uses only those before it in this list, and a module uses only the modules above it in its crate; the compiler and
 //! `tests/architecture.rs` check this.
-//! `docs/architecture.md` describes the loop, the path from a scenario file to a recording, and recipes for extensions.
+//! `docs/reference/architecture.md` describes the loop and the path from a scenario file to a recording, and
+//! `docs/reference/extending.md` has recipes for extensions.
 
 #![warn(missing_docs, clippy::unwrap_used)]
 

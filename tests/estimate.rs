@@ -6,7 +6,7 @@ use sandbox::lab::estimate::{
     Goal, Level, Limit, Means, Offer, Prior, Series, Tolerance, Wanted, further, pilot, predicted,
 };
 
-/// Orders and sizes of errors with their weights in percent, as docs/accuracy.md gives them.
+/// Orders and sizes of errors with their weights in percent, as docs/reference/estimates.md gives them.
 const ORDERS: [(f64, u32); 9] = [
     (0.4, 4),
     (0.5, 7),

@@ -1,5 +1,5 @@
-//! The walking law `headings` in plain code, written from "The law exactly" in docs/scenarios.md alone, beside what
-//! agents decide: with walls, narrowings, oncoming people, motivation and density.
+//! The walking law `headings` in plain code, written from "The law exactly" in docs/reference/profiles.md alone, beside
+//! what agents decide: with walls, narrowings, oncoming people, motivation and density.
 
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
 //! The numbers with which the README, the pages and reports say how real the profiles are, and how many rows of the
-//! paper's Table 1 are met, are those of the data: docs/held_out.json, docs/validation.json and
-//! docs/tables/reproduction.md.
+//! paper's Table 1 are met, are those of the data: docs/findings/held_out.json, docs/findings/validation.json and
+//! docs/reference/tables/reproduction.md.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,24 +10,28 @@ use serde_json::Value;
 use crate::common::room::{done, scenario};
 
 const README: &str = include_str!("../README.md");
-const VALIDATION: &str = include_str!("../docs/validation.md");
-const COMPARISON: &str = include_str!("../docs/comparison.md");
+const VALIDATION: &str = include_str!("../docs/findings/validation.md");
+const COMPARISON: &str = include_str!("../docs/guide/comparison.md");
 const PAGES: [(&str, &str); 5] = [
     ("README.md", README),
     ("docs/index.md", include_str!("../docs/index.md")),
-    ("docs/comparison.md", COMPARISON),
-    ("docs/jupedsim.md", include_str!("../docs/jupedsim.md")),
-    ("docs/validation.md", VALIDATION),
+    ("docs/guide/comparison.md", COMPARISON),
+    (
+        "docs/guide/jupedsim.md",
+        include_str!("../docs/guide/jupedsim.md"),
+    ),
+    ("docs/findings/validation.md", VALIDATION),
 ];
 
 /// The values that were held out.
 fn held_out() -> Value {
-    serde_json::from_str(include_str!("../docs/held_out.json")).unwrap()
+    serde_json::from_str(include_str!("../docs/findings/held_out.json")).unwrap()
 }
 
 /// The results of `sandbox validate` by profile.
 fn validated() -> Value {
-    let status: Value = serde_json::from_str(include_str!("../docs/validation.json")).unwrap();
+    let status: Value =
+        serde_json::from_str(include_str!("../docs/findings/validation.json")).unwrap();
     status["profiles"].clone()
 }
 
@@ -55,14 +59,26 @@ fn counts_of(text: &str, all: u64) -> Vec<u64> {
     words.collect()
 }
 
+/// The pages in a folder, and in the folders in it.
+fn pages_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let pages = paths.flat_map(|path| match path.is_dir() {
+        true => pages_in(&path),
+        false => vec![path],
+    });
+    let pages = pages.filter(|path| path.extension().is_some_and(|one| one == "md"));
+    pages.collect()
+}
+
 /// The README and all pages of docs/.
 fn all_pages() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let docs = fs::read_dir(root.join("docs")).unwrap();
-    let paths = docs.map(|entry| entry.unwrap().path());
-    let pages = paths.filter(|path| path.extension().is_some_and(|one| one == "md"));
-    let all = pages.chain([root.join("README.md")]);
-    all.map(|path| (path.clone(), fs::read_to_string(path).unwrap()))
+    let mut all = pages_in(&root.join("docs"));
+    assert!(all.len() > 30, "{all:?}");
+    all.push(root.join("README.md"));
+    all.into_iter()
+        .map(|path| (path.clone(), fs::read_to_string(path).unwrap()))
         .collect()
 }
 
@@ -118,14 +134,14 @@ fn pages_lead_with_the_values_to_which_nothing_was_fitted() {
         );
         assert!(page.contains("nothing was fitted"), "{name}");
         assert!(counts_of(&page, all).iter().all(|&n| n == inside), "{name}");
-        // docs/validation.md also has counts of other seeds, steps and candidates.
+        // docs/findings/validation.md also has counts of other seeds, steps and candidates.
         let others = counts_of(&page, 52);
         let is_known = others.iter().all(|said| known.contains(said));
         assert!(
-            name == "docs/validation.md" || is_known,
+            name == "docs/findings/validation.md" || is_known,
             "{name}: {others:?}"
         );
-        if name != "docs/jupedsim.md" {
+        if name != "docs/guide/jupedsim.md" {
             assert!(
                 at < page.find(&second).expect(name),
                 "{name}: {second} comes first"
@@ -260,7 +276,10 @@ fn flows_through_gaps_are_as_much_too_high_as_pages_say() {
     });
     let [low, high] = [excess[0].min(excess[1]), excess[0].max(excess[1])];
     let said = format!("{low} to {high} % too high");
-    for (name, page) in PAGES.iter().filter(|(name, _)| *name != "docs/jupedsim.md") {
+    for (name, page) in PAGES
+        .iter()
+        .filter(|(name, _)| *name != "docs/guide/jupedsim.md")
+    {
         assert!(flat(page).contains(&said), "{name}: {said}");
         assert!(
             flat(page).contains("full counterflows") || flat(page).contains("Full counterflows"),
@@ -271,7 +290,10 @@ fn flows_through_gaps_are_as_much_too_high_as_pages_say() {
 
 #[test]
 fn pages_count_the_rows_of_table_1_that_the_table_has() {
-    let rows = table(include_str!("../docs/tables/reproduction.md"), "table1");
+    let rows = table(
+        include_str!("../docs/reference/tables/reproduction.md"),
+        "table1",
+    );
     let kept = rows
         .iter()
         .filter(|row| row.last().is_some_and(|cell| cell == "kept"))
@@ -298,7 +320,7 @@ fn pages_count_the_rows_of_table_1_that_the_table_has() {
 
 #[test]
 fn a_speed_beside_jupedsim_says_both_steps_and_that_of_one_step() {
-    let page = include_str!("../docs/performance.md");
+    let page = include_str!("../docs/findings/performance.md");
     let row = |begin: &str| -> Vec<String> {
         let line = page
             .lines()

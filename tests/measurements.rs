@@ -261,7 +261,7 @@ fn all_measurements() -> Vec<String> {
 
 #[test]
 fn one_page_defines_every_measurement() {
-    let page = include_str!("../docs/measurements.md");
+    let page = include_str!("../docs/reference/measurements.md");
     let table = page.split("## All measurements").nth(1).unwrap();
     let first_cells: String = table
         .lines()

@@ -154,7 +154,7 @@ fn wished_waits_are_no_delay() {
 
 #[test]
 fn every_value_has_a_definition_and_the_page_has_all_of_them() {
-    let page = include_str!("../docs/measurements.md");
+    let page = include_str!("../docs/reference/measurements.md");
     let all = Measurement::all_quantities();
     // Snapshots and run times have data, no values.
     let kinds: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
@@ -174,7 +174,10 @@ fn every_value_has_a_definition_and_the_page_has_all_of_them() {
                 "| `{kind}` | `{}` | {} | {} |",
                 one.name, one.unit, one.meaning
             );
-            assert!(page.contains(&row), "docs/measurements.md lacks {row}");
+            assert!(
+                page.contains(&row),
+                "docs/reference/measurements.md lacks {row}"
+            );
         }
     }
 }

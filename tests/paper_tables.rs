@@ -1,11 +1,11 @@
-//! Tables 1 and 2 as docs/tables/reproduction.md has them: the bands follow from the spread over seeds, and the
-//! verdicts from the bands.
+//! Tables 1 and 2 as docs/reference/tables/reproduction.md has them: the bands follow from the spread over seeds, and
+//! the verdicts from the bands.
 
 use std::fs;
 
 #[test]
 fn bands_are_where_one_more_run_lies_with_95_percent_and_counts_are_those_of_the_rows() {
-    let text = fs::read_to_string("docs/tables/reproduction.md").unwrap();
+    let text = fs::read_to_string("docs/reference/tables/reproduction.md").unwrap();
     let part = |name: &str| {
         let (_, rest) = text.split_once(&format!("<!-- {name} -->")).unwrap();
         rest.split_once("<!-- /").unwrap().0.to_owned()

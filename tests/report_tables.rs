@@ -257,7 +257,7 @@ fn the_status_is_that_of_the_profiles_of_the_run_and_of_the_documents() {
         status.contains("not checked against the texts of these guidelines"),
         "{status}"
     );
-    let document = include_str!("../docs/validation.md");
+    let document = include_str!("../docs/findings/validation.md");
     let (_, counts) = document.split_once("by steer+sph: ").unwrap();
     let (counts, _) = counts.split_once(" values)").unwrap();
     let (cases, values) = counts.split_once(" cases (").unwrap();
@@ -331,13 +331,13 @@ fn reports_read_the_results_that_the_documents_have() {
     for (suite, document, status) in [
         (
             "verification",
-            include_str!("../docs/verification.md"),
-            include_str!("../docs/verification.json"),
+            include_str!("../docs/findings/verification.md"),
+            include_str!("../docs/findings/verification.json"),
         ),
         (
             "validation",
-            include_str!("../docs/validation.md"),
-            include_str!("../docs/validation.json"),
+            include_str!("../docs/findings/validation.md"),
+            include_str!("../docs/findings/validation.json"),
         ),
     ] {
         let status: Status = serde_json::from_str(status).unwrap();

@@ -1,4 +1,4 @@
-//! Ways by time, recomputed from positions and choices with the formulas of docs/scenarios.md alone.
+//! Ways by time, recomputed from positions and choices with the formulas of docs/reference/routes.md alone.
 
 use std::collections::BTreeMap;
 

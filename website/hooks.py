@@ -14,8 +14,10 @@ ROOT = Path(__file__).resolve().parent.parent
 MADE = ROOT / "target" / "site-parts"
 OUTSIDE = re.compile(r"\]\(((?:\.\./)+)([^)#\s]+)(#[^)]*)?\)")
 ALWAYS = ["CONTRIBUTING.md", "CHANGELOG.md"]
-# Pages for people who work on the program, and lists of names, come after the others in the search.
-INSIDE = re.compile(r"(architecture|performance|scaling|self-measurement|releasing|python-api|rust-api)\.md|tables/|source/")
+# Findings, pages for people who work on the program, and lists of names come after the others in the search.
+INSIDE = re.compile(
+    r"findings/|reference/((architecture|extending|self-measurement|releasing|python-api|rust-api)\.md|tables/)|source/"
+)
 
 
 def _target(page: str, up: str, path: str) -> str | None:

@@ -3,12 +3,12 @@
 //!
 //! | experiment | question | findings |
 //! |---|---|---|
-//! | [`domains`] | how would crowds divide among processes? | docs/scaling.md |
-//! | [`compare`] | how fast are other engines on the same crowds? | docs/performance.md |
-//! | [`intervals`] | how often do the intervals of estimates hold the value? | docs/accuracy.md |
-//! | [`physics`] | do crowds of the model do what crowds did in known experiments? | docs/questions.md |
-//! | [`symmetric`] | would sums that visit each pair once pay? | docs/performance.md |
-//! | [`walls`] | how accurate are the integrals over walls by this and other methods? | docs/accuracy.md |
+//! | [`domains`] | how would crowds divide among processes? | docs/findings/scaling.md |
+//! | [`compare`] | how fast are other engines on the same crowds? | docs/findings/performance.md |
+//! | [`intervals`] | how often do the intervals of estimates hold the value? | docs/findings/accuracy.md |
+//! | [`physics`] | do crowds of the model do what crowds did in known experiments? | docs/findings/questions.md |
+//! | [`symmetric`] | would sums that visit each pair once pay? | docs/findings/performance.md |
+//! | [`walls`] | how accurate are the integrals over walls by this and other methods? | docs/findings/accuracy.md |
 
 #![warn(clippy::unwrap_used)]
 

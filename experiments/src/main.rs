@@ -39,7 +39,7 @@ enum Command {
     Symmetric(TimingOptions),
     #[command(
         about = walls::ABOUT,
-        after_help = "Example: cargo run --release -p experiments -- walls --update docs/tables/accuracy.md",
+        after_help = "Example: cargo run --release -p experiments -- walls --update docs/reference/tables/accuracy.md",
         mut_arg("out", |out| out.help("Write the results to this folder as Markdown, CSV, JSON, SVG and PNG"))
     )]
     Walls(WallOptions),

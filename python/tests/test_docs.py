@@ -1,11 +1,11 @@
-"""The listings of docs/python.md run, each by itself."""
+"""The listings of docs/guide/python.md run, each by itself."""
 
 import re
 from pathlib import Path
 
 import pytest
 
-DOCUMENT = Path(__file__).parents[2] / "docs" / "python.md"
+DOCUMENT = Path(__file__).parents[2] / "docs" / "guide" / "python.md"
 LISTINGS = re.findall(
     r"^```python\n(.*?)^```$", DOCUMENT.read_text(encoding="utf-8"), re.M | re.S
 )

@@ -28,7 +28,7 @@ pub struct SceneOptions {
     pub profile: Option<String>,
     #[command(flatten)]
     pub changes: ChangeOptions,
-    /// Numerical settings: the paper's, cheaper ones, or more accurate ones (see docs/accuracy.md)
+    /// Numerical settings: the paper's, cheaper ones, or more accurate ones (see docs/guide/estimate.md)
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Preset::names()))]
     pub preset: Option<String>,
     /// Time step Δt_fine in seconds, or `auto`: the largest step that is safely stable and keeps results (see

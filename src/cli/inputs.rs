@@ -18,7 +18,7 @@ use scenario::{Draft, Scenario, Setting};
 /// The default profile is the paper's, as files of earlier versions expect; it is not for questions about real people.
 const DEFAULT_PROFILE_NOTE: &str = "note: no `profile` is given: `sph`, the default, is the paper's, whose dense \
                                     crowds walk two to five times as fast as people do; `steer+sph` is fitted to \
-                                    experiments (docs/validation.md)";
+                                    experiments (docs/findings/validation.md)";
 
 /// Reads a scenario and applies the settings of the command line. `until` is the flag that sets another end, and the
 /// end in seconds. Writing the output files takes `writing` bytes of memory per agent. Adds the files that were read to

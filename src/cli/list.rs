@@ -76,7 +76,7 @@ fn overview_text() -> String {
     let heads = [
         "Scenarios (sandbox NAME)",
         "Profiles of the paper (--profile NAME; quote the arrow, or write sf-sph)",
-        "Profiles fitted to experiments (docs/validation.md)",
+        "Profiles fitted to experiments (docs/findings/validation.md)",
     ];
     let texts = heads.into_iter().zip(lists()).map(|(head, list)| {
         let lines = list.iter().map(|(name, about)| entry(name, 0, about));

@@ -76,7 +76,7 @@ pub fn text(run: &Run, verbose: bool) -> String {
     text += &through_walls(run);
     let mut measurements = run.scenario.measurements.iter();
     if measurements.any(|one| one.about().has_thresholds) {
-        text += "  (thresholds are from the literature, not safety limits: docs/measurements.md)\n";
+        text += "  (thresholds are from the literature, not safety limits: docs/reference/measurements.md)\n";
     }
     text += &journeys(run);
     let threads = rayon::current_num_threads();

@@ -30,7 +30,7 @@ pub const EVERY_SCENE: &str =
 #[derive(Args)]
 pub struct VerifyOptions {
     /// Only these cases, such as 6, 12a, 12 or iso6 [default: all]; after SUITE.json those of a suite of your own: a
-    /// study with `cases` (docs/validation.md)
+    /// study with `cases` (docs/guide/suites.md)
     #[arg(value_name = "SUITE.json|CASE")]
     pub case: Vec<String>,
     /// The same as CASE
@@ -43,7 +43,7 @@ pub struct VerifyOptions {
 #[derive(Args)]
 pub struct ValidateOptions {
     /// Only these scenes, such as gap-2.4 or door [default: all]; after SUITE.json those of a suite of your own: a
-    /// study with `cases` (docs/validation.md)
+    /// study with `cases` (docs/guide/suites.md)
     #[arg(value_name = "SUITE.json|SCENE")]
     pub scene: Vec<String>,
     #[command(flatten)]
@@ -53,7 +53,7 @@ pub struct ValidateOptions {
 #[derive(Args)]
 pub struct SuiteOptions {
     /// Folder with files of trajectories: scenes that begin from such a file are skipped without it
-    /// (docs/validation.md)
+    /// (docs/guide/suites.md)
     #[arg(long, value_name = "DIR")]
     pub data: Option<PathBuf>,
     /// This profile in place of the default ones (verify: sph, sf->sph, rvo->sph; validate: also walk+sph and

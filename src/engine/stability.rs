@@ -1,5 +1,5 @@
 //! A formula for the largest stable time step. Its constants are fitted to maps of the largest step at which
-//! crowds come to rest (`sandbox stress`, `docs/stability.md`).
+//! crowds come to rest (`sandbox stress`, `docs/findings/stability.md`).
 //!
 //! Near rest every mode of a crowd is an oscillator, ẍ = −ω² x − γ ẋ. With semi-implicit Euler it decays if
 //! ω² Δt² + 2γ Δt < 4, that is, for steps up to

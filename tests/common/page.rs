@@ -1,4 +1,4 @@
-//! Reads pages as docs/pages.md describes them.
+//! Reads pages as docs/reference/page-format.md describes them.
 
 use std::collections::BTreeMap;
 use std::path::Path;

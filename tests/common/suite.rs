@@ -1,4 +1,4 @@
-//! The suite of docs/validation.md.
+//! The suite of docs/guide/suites.md.
 
 use std::fs;
 use std::path::Path;
@@ -6,9 +6,9 @@ use std::path::Path;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The files of the example in docs/validation.md: a scenario and a suite.
+/// The files of the example in docs/guide/suites.md: a scenario and a suite.
 pub fn example() -> TempDir {
-    let document = include_str!("../../docs/validation.md");
+    let document = include_str!("../../docs/guide/suites.md");
     let folder = tempfile::tempdir().unwrap();
     for name in ["room.json", "my_suite.json"] {
         let (_, listing) = document.split_once(&format!("`{name}`, ")).unwrap();

@@ -1,5 +1,5 @@
-//! The longest queues before passages, from positions and speeds over time and the plan alone, as docs/measurements.md
-//! defines them. It shares no code with the program: no mesh, no path maps, no index.
+//! The longest queues before passages, from positions and speeds over time and the plan alone, as
+//! docs/reference/measurements.md defines them. It shares no code with the program: no mesh, no path maps, no index.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,5 +1,5 @@
 //! Open questions of crowd physics: the behavior of the model's crowds in situations with known experiments. Each
-//! question is a study, a table and a picture; docs/questions.md has the known results and the conclusions.
+//! question is a study, a table and a picture; docs/findings/questions.md has the known results and the conclusions.
 
 mod oscillations;
 mod queue_pushes;

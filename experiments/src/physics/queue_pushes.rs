@@ -13,7 +13,7 @@ use sandbox::scenario::measurements::FrontData;
 /// k of the paper's profiles.
 const GAS_CONSTANT: f64 = 200.0;
 /// Two rows of five people, pushed by Feldmann and Adrian (2023): the mean distance, meters, and the speed of the front
-/// through their heads, m/s, with the uncertainty that the choice of a threshold makes (docs/questions.md).
+/// through their heads, m/s, with the uncertainty that the choice of a threshold makes (docs/findings/questions.md).
 const MEASURED: [Point; 2] = [
     Point {
         x: 0.357,

@@ -45,7 +45,8 @@ const BUSIEST: [Stretch; 6] = [
     ("festival", 60.0, 2.0),
     ("plaza", 10.0, 0.5),
 ];
-/// The profiles of scenes that are shipped with another one: those with which docs/performance.md measures them.
+/// The profiles of scenes that are shipped with another one: those with which docs/findings/performance.md measures
+/// them.
 const MEASURED_WITH: [(&str, &str); 2] = [("platforms", "rvo->sph"), ("festival", "sph")];
 /// Quick plans measure the first `QUICK` stretches.
 const QUICK: usize = 4;

@@ -18,7 +18,7 @@ use scenario::Preset;
 
 /// What ± means, in one sentence for all reports.
 pub const ABOUT: &str = "± is the error from chance (seeds) and from the time step. It is not the error of the model: \
-                         docs/validation.md compares that with experiments.";
+                         docs/findings/validation.md compares that with experiments.";
 
 /// A wanted result.
 #[derive(Debug, Clone, Serialize)]

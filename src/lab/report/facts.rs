@@ -8,8 +8,8 @@ use scenario::measurements::{GAP, HEADWAY, Measurement, Quantity, SLOW, STUCK_AF
 /// What readers of all values must know.
 pub const DENSITY: &str = "\
     Exposure, levels of service and crowd pressure use ρ_i, the density of measurements: a kernel with a support \
-    radius of √5 m over the person and all that it sees. docs/measurements.md has the formulas, sources and limits. \
-    A dash stands for a value that a run has not.";
+    radius of √5 m over the person and all that it sees. docs/reference/measurements.md has the formulas, sources and \
+    limits. A dash stands for a value that a run has not.";
 
 /// A result of a run, in words.
 pub struct Fact {

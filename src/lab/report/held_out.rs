@@ -1,5 +1,5 @@
-//! Values of experiments to which nothing was fitted, as `docs/held_out.json` has them. They were counted outside of
-//! this repository.
+//! Values of experiments to which nothing was fitted, as `docs/findings/held_out.json` has them. They were counted
+//! outside of this repository.
 
 use std::collections::BTreeMap;
 

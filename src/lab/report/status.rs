@@ -20,16 +20,16 @@ impl Known {
     fn shipped() -> Result<Self, LabError> {
         Ok(Self {
             held_out: parsed(
-                "docs/held_out.json",
-                include_str!("../../../docs/held_out.json"),
+                "docs/findings/held_out.json",
+                include_str!("../../../docs/findings/held_out.json"),
             )?,
             verified: parsed(
-                "docs/verification.json",
-                include_str!("../../../docs/verification.json"),
+                "docs/findings/verification.json",
+                include_str!("../../../docs/findings/verification.json"),
             )?,
             validated: parsed(
-                "docs/validation.json",
-                include_str!("../../../docs/validation.json"),
+                "docs/findings/validation.json",
+                include_str!("../../../docs/findings/validation.json"),
             )?,
         })
     }
@@ -80,8 +80,8 @@ pub fn status(profiles: &[&str], is_changed: bool) -> Result<Vec<Block>, LabErro
              densities and speeds with published experiments, to most of which the calibrated profiles were fitted. \
              Tolerances: 6 % for flows, 10 % for densities and speeds. `sandbox verify` runs small cases with known \
              answers. They follow the tests of RiMEA, ISO 20414 and NIST that a flat plan allows, but were not checked \
-             against the texts of these guidelines. docs/validation.md and docs/verification.md list all cases and the \
-             known misses. In version {version}:"
+             against the texts of these guidelines. docs/findings/validation.md and docs/findings/verification.md list \
+             all cases and the known misses. In version {version}:"
         )),
         Block::List(items),
     ])
@@ -130,17 +130,17 @@ mod tests {
     #[test]
     fn invalid_data_are_an_error_with_the_file_and_the_place() {
         let said = |text| {
-            let error = parsed::<Status>("docs/validation.json", text).unwrap_err();
+            let error = parsed::<Status>("docs/findings/validation.json", text).unwrap_err();
             error.to_string()
         };
         let cut = said("{\n  \"suite\": \"validation\",\n  \"profiles\": {");
         assert_eq!(
             cut,
-            "docs/validation.json: EOF while parsing an object at line 3 column 15"
+            "docs/findings/validation.json: EOF while parsing an object at line 3 column 15"
         );
         let unknown = said("{\n  \"suit\": \"validation\"\n}");
         assert!(
-            unknown.starts_with("docs/validation.json: unknown field `suit`"),
+            unknown.starts_with("docs/findings/validation.json: unknown field `suit`"),
             "{unknown}"
         );
         assert!(unknown.ends_with("at line 2 column 8"), "{unknown}");

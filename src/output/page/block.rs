@@ -1,6 +1,6 @@
 //! Blocks of frames: whole numbers in columns, as differences, and compressed.
 //!
-//! `docs/pages.md` has the format.
+//! `docs/reference/page-format.md` has the format.
 
 use std::collections::HashMap;
 

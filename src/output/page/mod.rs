@@ -1,4 +1,5 @@
-//! A page that plays a run in a browser: one HTML file without requests. `docs/pages.md` has its format.
+//! A page that plays a run in a browser: one HTML file without requests. `docs/reference/page-format.md` has its
+//! format.
 //!
 //! The file is written part by part while the run goes on, so memory does not grow with the length of the run, and a
 //! run that is killed leaves a page that plays up to its last part. `viewer/` has the script, its style and its

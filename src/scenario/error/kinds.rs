@@ -8,7 +8,7 @@ use serde_json::Value;
 const ENDINGS: [(&[&str], &str); 4] = [
     (
         &["dxf", "dwg", "ifc"],
-        "drawings of CAD programs are not read: make GeoJSON or WKT of it (docs/recipes.md says how)",
+        "drawings of CAD programs are not read: make GeoJSON or WKT of it (docs/guide/recipes.md says how)",
     ),
     (
         &["png", "jpg", "jpeg", "pdf", "svg", "gif"],

@@ -55,7 +55,7 @@ pub struct File {
     #[schemars(range(min = 0, max = LONGEST_TIME), extend("default" = DEFAULT_DURATION))]
     pub duration_secs: Option<f64>,
     /// Numerical settings for the keys that are not given: `paper` (as published), `fast` (cheaper, larger steps) or
-    /// `accurate` (close to the model's limit for small steps); see docs/accuracy.md.
+    /// `accurate` (close to the model's limit for small steps); see docs/guide/estimate.md.
     #[serde(rename = "preset")]
     pub _preset: Preset, // `preset::fill` has expanded it
     /// Δt_fine, seconds: the length of a frame. `auto` is the longest step that is safely stable, at most

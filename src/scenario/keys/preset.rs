@@ -1,4 +1,4 @@
-//! Presets: named choices of the numerics, measured in `docs/accuracy.md`.
+//! Presets: named choices of the numerics, measured in `docs/findings/accuracy.md`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -23,7 +23,7 @@ impl IntegratorChoice {
 }
 
 /// Velocity Verlet where agents stay: it is closer to the limit of fine steps in crowds that press or stand, but no
-/// better with avoidance, worse with walking laws, and lowers the flow through doors (docs/accuracy.md).
+/// better with avoidance, worse with walking laws, and lowers the flow through doors (docs/findings/accuracy.md).
 fn suited_integrator(scene: &Scene) -> Integrator {
     if agents_stay(scene) {
         Integrator::VelocityVerlet
@@ -40,8 +40,8 @@ fn agents_stay(scene: &Scene) -> bool {
 }
 
 /// The longest step, seconds, at which the evacuations of Table 1 differ from those at the paper's step by no more than
-/// two standard deviations of their seeds (docs/accuracy.md). Where agents avoid each other in a jam, the jam depends
-/// on the step. Where agents stay, the limit is the accuracy of waves.
+/// two standard deviations of their seeds (docs/findings/accuracy.md). Where agents avoid each other in a jam, the jam
+/// depends on the step. Where agents stay, the limit is the accuracy of waves.
 fn longest_faithful_step(scene: &Scene) -> f64 {
     if agents_stay(scene) {
         return 0.05;

@@ -33,7 +33,7 @@ pub fn note(scene: &Scene) -> Option<String> {
     let [x, y] = [middle.x, middle.y].map(to_centimeters);
     Some(format!(
         "social forces of profile `{}` act through walls, as in the paper: people on both sides of a wall of {} m, at \
-         ({x}, {y}), push each other; `steer+sph` and `rvo` hardly do (docs/scenarios.md)",
+         ({x}, {y}), push each other; `steer+sph` and `rvo` hardly do (docs/reference/profiles.md)",
         shown(&group.blend.name),
         brief(to_centimeters(thickness)),
     ))

@@ -1,5 +1,5 @@
 "use strict";
-/* The data of the page: docs/pages.md of the sandbox has their format. */
+/* The data of the page: docs/reference/page-format.md of the sandbox has their format. */
 
 /** The bytes of a text in base64. */
 function bytesOf(text) {
