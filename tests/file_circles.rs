@@ -10,7 +10,7 @@ use std::fs;
 use std::path::Path;
 
 /// Every circle, as the files in it without their ending, sorted.
-const KNOWN: [&[&str]; 15] = [
+const KNOWN: [&[&str]; 5] = [
     &[
         "engine/geometry/polygon",
         "engine/geometry/ring",
@@ -35,33 +35,7 @@ const KNOWN: [&[&str]; 15] = [
         "engine/ways/mesh",
         "engine/ways/narrow",
     ],
-    &["lab/bench/plan", "lab/bench/report"],
-    &["lab/estimate/bounds", "lab/estimate/run"],
-    &["lab/estimate/prior", "lab/estimate/series"],
-    &["lab/suite/counts", "lab/suite/report", "lab/suite/status"],
-    &["lab/suite/file", "lab/suite/known"],
-    &[
-        "output/plot/draw",
-        "output/plot/marks",
-        "output/plot/output",
-    ],
-    &[
-        "scenario/measurements/passages",
-        "scenario/measurements/stuck",
-    ],
     &["scenario/read/draft", "scenario/read/scenario"],
-    &[
-        "scenario/scene/bodies",
-        "scenario/scene/reach",
-        "scenario/scene/reached",
-        "scenario/scene/ways",
-    ],
-    &[
-        "scenario/scene/goals",
-        "scenario/scene/journeys",
-        "scenario/scene/people",
-    ],
-    &["scenario/scene/periodic", "scenario/scene/surroundings"],
 ];
 
 /// The names from the crate down to a file, such as `engine`, `simulation`, `plans`.

@@ -12,7 +12,7 @@ use experiments::{compare, domains, physics, symmetric, walls};
 use sandbox::cli::{
     CaseOptions, Failure, PrintOptions, ResultOptions, TimingOptions, UpdateOptions, Watch, main_of,
 };
-use sandbox::lab::reproduce::reproduce;
+use sandbox::lab::reproduce::{Product, reproduce};
 use sandbox::output::document::Names;
 
 /// Repeat finished experiments
@@ -59,9 +59,9 @@ enum Command {
 
 #[derive(Args)]
 struct PhysicsOptions {
-    /// The question
-    #[arg(value_parser = PossibleValuesParser::new(physics::PRODUCTS.map(|product| product.name)))]
-    question: String,
+    /// The questions
+    #[arg(required = true, value_parser = PossibleValuesParser::new(physics::PRODUCTS.map(|product| product.name)))]
+    questions: Vec<String>,
     #[command(flatten)]
     cases: CaseOptions,
 }
@@ -122,21 +122,23 @@ fn run(command: &Command) -> Result<(), Failure> {
             }),
         Command::Walls(options) => measure_walls(options),
         Command::Coverage(options) => count_intervals(options),
-        Command::Physics(options) => {
-            let PhysicsOptions { question, cases } = options;
-            let product = physics::PRODUCTS
-                .into_iter()
-                .find(|product| product.name == question);
-            let product = product.ok_or_else(|| Failure::Input(format!("{question}: unknown")))?;
-            let store = cases.store(&[product.name], &product.names())?;
-            let found = reproduce(&[product], 1, &store, &Watch::new())?;
-            found.iter().try_for_each(|one| cases.give(one))
-        }
+        Command::Physics(options) => answer(&options.questions, &options.cases),
         Command::Knowledge(cases) => {
             let store = cases.store(&[KNOWLEDGE], &Names::new(KNOWLEDGE, &[KNOWLEDGE], &[]))?;
             cases.give(&knowledge(&store, &Watch::new())?.findings()?)
         }
     }
+}
+
+/// Computes the products of these questions of physics.
+fn answer(questions: &[String], cases: &CaseOptions) -> Result<(), Failure> {
+    let is_asked = |product: &&Product| questions.iter().any(|name| name == product.name);
+    let products: Vec<&Product> = physics::PRODUCTS.into_iter().filter(is_asked).collect();
+    let names: Vec<&str> = products.iter().map(|product| product.name).collect();
+    let files: Vec<Names> = products.iter().map(|product| product.names()).collect();
+    let store = cases.store(&names, &Names::joined("physics", &files))?;
+    let found = reproduce(&products, 1, &store, &Watch::new())?;
+    found.iter().try_for_each(|one| cases.give(one))
 }
 
 fn count_intervals(options: &CoverageOptions) -> Result<(), Failure> {
