@@ -3,7 +3,8 @@
 use parry2d::bounding_volume::Aabb;
 use parry2d::utils::{point_in_poly2d, segments_intersection2d};
 
-use super::{PolygonError, bounds_of, index_of, to_parry};
+use super::error::PolygonError;
+use super::{bounds_of, index_of, to_parry};
 use crate::math::{Vector, is_finite, perpendicular, sides};
 
 /// A fraction of a length, not ½: corners of other rings often lie exactly in the middle of an edge.
