@@ -10,26 +10,7 @@ use std::fs;
 use std::path::Path;
 
 /// Every circle, as the files in it without their ending, sorted.
-const KNOWN: [&[&str]; 14] = [
-    &[
-        "engine/simulation/choice",
-        "engine/simulation/plans",
-        "engine/simulation/sight",
-        "engine/simulation/times",
-        "engine/simulation/trips",
-    ],
-    &[
-        "engine/ways/course",
-        "engine/ways/plan",
-        "engine/ways/rooms",
-        "engine/ways/route",
-    ],
-    &[
-        "engine/ways/edges",
-        "engine/ways/expansion",
-        "engine/ways/mesh",
-        "engine/ways/narrow",
-    ],
+const KNOWN: [&[&str]; 11] = [
     &["lab/bench/plan", "lab/bench/report"],
     &["lab/estimate/bounds", "lab/estimate/run"],
     &["lab/estimate/prior", "lab/estimate/series"],

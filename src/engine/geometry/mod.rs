@@ -5,7 +5,6 @@
 //! bounding volume hierarchy. A [`HiddenRegion`] is the part of an agent's kernel behind one wall (P_k in
 //! §4.3), in closed form.
 
-mod area;
 mod assemble;
 mod clearance;
 mod corners;
@@ -18,13 +17,12 @@ mod shadows;
 mod wall;
 mod walls;
 
-pub use area::Area;
 pub use assemble::assemble;
 pub use clearance::{Clear, LineAmongWalls};
 pub use error::PolygonError;
 pub use hidden_region::HiddenRegion;
 pub use polygon::Polygon;
-pub use ring::Ring;
+pub use ring::{Area, Ring};
 pub use ring_index::AreaIndex;
 pub use shadows::visible_parts;
 pub use wall::{NearestPoint, Wall, WallPart};

@@ -2,9 +2,8 @@
 
 use parry2d::bounding_volume::Aabb;
 
-use super::area::Area;
 use super::error::PolygonError;
-use super::ring::{Ring, encloses, signed_area};
+use super::ring::{Area, Ring, encloses, signed_area};
 use super::ring_index::{AreaIndex, RingIndex};
 use super::{bounds_of, index_of};
 use crate::math::{Vector, sides};

@@ -4,8 +4,7 @@ use std::cell::OnceCell;
 
 use parry2d::partitioning::Bvh;
 
-use super::area::Area;
-use super::ring::Ring;
+use super::ring::{Area, Ring};
 use super::{bounds_of, index_of};
 use crate::math::{Vector, sides};
 
