@@ -283,6 +283,7 @@ impl<'a> Chooser<'a> {
         let state = &self.crowd.progress.places[usize::from(place)];
         let definition = &self.scene.journeys.places[usize::from(place)];
         let line = Line {
+            length,
             stream: Some(&state.stream),
             oncoming: 0,
             flow: self.flow(definition, state),
@@ -293,8 +294,8 @@ impl<'a> Chooser<'a> {
             let shortest = lengths.filter(|length| length.is_finite()).reduce(f64::min);
             shortest.unwrap_or(0.0)
         });
-        let waiting = line.waiting(length, speed.max(self.scene.preferred_speed));
-        line.expected(length, [length / speed, waiting], &[onward / speed])
+        let waiting = line.waiting(speed.max(self.scene.preferred_speed));
+        line.expected(length / speed, waiting, &[onward / speed])
     }
 
     /// The flow that an agent expects through a place, P/s.

@@ -1,8 +1,7 @@
 //! The rule by which agents choose, between places and between ways.
 //!
-//! An agent expects to pass a line, that of a place or an opening, when it has walked there, or when all agents that
-//! pass it before have walked there and passed at its flow, whichever is later. Agents that have chosen change their
-//! minds only for what is clearly quicker.
+//! An agent expects to pass a line when it has walked there, or when all agents that pass it before have walked there
+//! and passed at its flow, whichever is later. Agents change their minds only for what is clearly quicker.
 
 use serde::Serialize;
 
@@ -17,8 +16,7 @@ const LEAST_SHARE: f64 = 0.1;
 pub struct Expected {
     /// Walking to the line, seconds.
     pub walking_secs: f64,
-    /// Agents that pass the line before: those bound for it that are nearer, and at openings those that come from the
-    /// other side.
+    /// Agents that pass the line before: those that are nearer, and at openings those that come from the other side.
     pub ahead: u32,
     /// The flow through the line, P/s; `None` if it is unlimited.
     pub flow_per_sec: Option<f64>,
@@ -39,17 +37,18 @@ impl Expected {
     /// The same if walking to the line takes another time, seconds.
     #[must_use]
     pub(super) fn walking(self, walking_secs: f64) -> Self {
-        let through = walking_secs.max(self.waiting_secs);
         Self {
             walking_secs,
-            total_secs: through + self.onward_secs,
+            total_secs: walking_secs.max(self.waiting_secs) + self.onward_secs,
             ..self
         }
     }
 }
 
-/// A line, as an agent at some distance sees it.
+/// A line, as an agent sees it.
 pub(super) struct Line<'a> {
+    /// Its distance from the agent, meters.
+    pub length: f64,
     /// The agents bound for it; `None` if they have not been counted yet.
     pub stream: Option<&'a Stream>,
     /// The number of agents from the other side that pass it before the agent.
@@ -59,27 +58,24 @@ pub(super) struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// The time until all those have passed the line that pass it before an agent `length` meters away, seconds; all
-    /// walk there at `speed`.
-    pub fn waiting(&self, length: f64, speed: f64) -> f64 {
+    /// The time until all agents that pass the line before have passed it, seconds; they walk there at `speed`.
+    pub fn waiting(&self, speed: f64) -> f64 {
         let own = self.stream;
-        let clear = own.map_or(0.0, |own| own.clear_after(length, speed, self.flow));
+        let clear = own.map_or(0.0, |own| own.clear_after(self.length, speed, self.flow));
         clear + f64::from(self.oncoming) / self.flow
     }
 
-    /// What an agent `length` meters away expects that takes `walking` and `waiting` seconds to pass the line, and
-    /// these times to walk on.
-    pub fn expected(&self, length: f64, [walking, waiting]: [f64; 2], onward: &[f64]) -> Expected {
-        let nearer = self.stream.map_or(0, |own| own.nearer_than(length));
+    /// What an agent expects that walks to the line, waits there and walks on, in parts, for these times, seconds.
+    pub fn expected(&self, walking: f64, waiting: f64, onward: &[f64]) -> Expected {
+        let nearer = (self.stream).map_or(0, |own| own.nearer_than(self.length));
+        let through = walking.max(waiting);
         Expected {
             walking_secs: walking,
             ahead: nearer + self.oncoming,
             flow_per_sec: Some(self.flow).filter(|flow| flow.is_finite()),
             waiting_secs: waiting,
             onward_secs: onward.iter().sum(),
-            total_secs: onward
-                .iter()
-                .fold(walking.max(waiting), |sum, secs| sum + secs),
+            total_secs: onward.iter().fold(through, |sum, secs| sum + secs),
         }
     }
 }

@@ -138,9 +138,8 @@ impl Crowd {
             let walks = trip
                 .is_none_or(|trip| trip.status == Status::Walking || trip.place_ahead().is_none());
             let walks = walks && agents.is_present(agent);
-            let goal = walks
-                .then(|| ways.map_to(agents.destination(agent)))
-                .flatten();
+            let to = walks.then(|| agents.destination(agent));
+            let goal = to.and_then(|to| ways.map_to(to));
             let p = agents.position[agent];
             let goes_on = |plan: &Plan| Some(plan.goal) == goal && plan.decides_at > frame;
             if plan.is_some_and(|plan| goes_on(&plan) && plan.located.stays_at(p)) {
@@ -158,10 +157,10 @@ impl Crowd {
             let here = located.triangle();
             let before = before.map(|before| rooms.room(before.triangle()));
             let from = before.filter(|&from| from != rooms.room(here));
-            if let Some(plan) = plan
-                && from.is_none()
-                && keeps_plan(plan)
-            {
+            let kept = plan
+                .as_mut()
+                .filter(|plan| from.is_none() && keeps_plan(plan));
+            if let Some(plan) = kept {
                 plan.located = located;
                 if plan.decides_at <= frame {
                     plan.decides_at = crowd.due_again(scene, agent, Some(*plan));

@@ -58,6 +58,7 @@ impl<'a> Times<'a> {
             }
         });
         Line {
+            length,
             stream: of(side),
             oncoming,
             flow: self.flow(side),
@@ -68,7 +69,7 @@ impl<'a> Times<'a> {
     fn passing(&self, side: Side, line: Option<&Line>, length: f64, speed: f64) -> [f64; 2] {
         let walking = length / speed;
         let of_others = speed.max(self.scene.preferred_speed);
-        let waiting = line.map_or(0.0, |line| line.waiting(length, of_others));
+        let waiting = line.map_or(0.0, |line| line.waiting(of_others));
         let door = self.rooms.opening(side).door();
         let state = door.and_then(|door| self.progress.places.get(usize::from(door)));
         match state.is_some_and(|state| !state.open) {
@@ -102,7 +103,7 @@ impl<'a> Times<'a> {
         let direct = ways.direct.map(|length| WayProspect {
             side: None,
             length,
-            expected: NO_LINE.expected(length, [length / speed, 0.0], &[]),
+            expected: GOAL.expected(length / speed, 0.0, &[]),
         });
         let through = ways.through.iter();
         let through = through.filter_map(|&(side, [length, aside])| {
@@ -114,20 +115,21 @@ impl<'a> Times<'a> {
                 .map_or(0.0, |exact| (over - exact.length).max(0.0));
             let line = self.line(side, length);
             let waits = Some(&line).filter(|_| self.scene.by_time());
-            let times = self.passing(side, waits, length, speed);
+            let [walking, waiting] = self.passing(side, waits, length, speed);
             let beyond = [*beyond, (aside - excess) / speed, from * slower];
             Some(WayProspect {
                 side: Some(side),
                 length,
-                expected: line.expected(length, times, &beyond),
+                expected: line.expected(walking, waiting, &beyond),
             })
         });
         direct.into_iter().chain(through).collect()
     }
 }
 
-/// No line: the goal.
-const NO_LINE: Line = Line {
+/// A goal: no line to wait at.
+const GOAL: Line = Line {
+    length: 0.0,
     stream: None,
     oncoming: 0,
     flow: f64::INFINITY,

@@ -5,16 +5,17 @@
 //! point or corner, and the length. It is exact for polygons with holes, shared by all agents with that goal, and needs
 //! no search per agent; an agent that is pushed off its way looks it up again. [`around`] keeps clear of the corners on
 //! the way.
+//!
+//! Four folders, each of which uses only those before it: `floor` knows no goals, `paths` no agents; `rooms` divides
+//! floors; `routes` has what agents follow and plan.
 
 mod floor;
 mod paths;
 mod rooms;
 mod routes;
 
-pub use floor::{
-    Bend, Corner, Floor, Mesh, Narrowing, Narrowings, Passage, Passages, Triangle, Turn,
-};
-pub use floor::{nearest_on, side};
+pub use floor::{Bend, Corner, Floor, Mesh, Triangle, Turn, nearest_on, side};
+pub use floor::{Narrowing, Narrowings, Passage, Passages};
 pub use paths::{Goal, Next, PathMap, SLACK, Way, around};
 pub use rooms::{Door, Located, Opening, Rooms, Side, WIDEST};
 pub use routes::{Destination, MapKey, Plan, Regions, Route, Shortest, Walker, Ways, WaysOut};
