@@ -134,8 +134,8 @@ fn an_agent_on_a_detour_that_is_pushed_into_a_niche_walks_out_at_once() {
     let (plan, agents) = (plan(&simulation), simulation.frame().agents);
     let rooms = simulation.scene().rooms().unwrap();
     let inside = rooms.floor.locate(niche).unwrap();
-    assert_eq!(rooms.room(plan.triangle), rooms.room(inside));
-    assert!(rooms.steps_out(rooms.room(inside)).is_empty());
+    assert_eq!(rooms.room(plan.located.triangle()), rooms.room(inside));
+    assert!(rooms.sides_in(rooms.room(inside)).is_empty());
     let aim = agents.aim[agents.index_of(id).unwrap()];
     assert!(aim.y < 10.1, "{aim}");
 }

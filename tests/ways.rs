@@ -5,14 +5,19 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sandbox::engine::geometry::{Area, Ring};
 use sandbox::engine::math::{Vector, direction};
-use sandbox::engine::ways::{Floor, Goal, Next, PathMap, WayError, around, nearest_on};
+use sandbox::engine::ways::{Floor, Goal, Next, PathMap, Way, WayError, around, nearest_on};
 
 /// The direction of the next step, `clearance` meters from corners.
-fn heading(floor: &Floor, p: Vector, next: &Next, clearance: f64) -> Vector {
-    match *next {
-        Next::Corner { bend, borders } => {
+fn heading(floor: &Floor, p: Vector, way: &Way, clearance: f64) -> Vector {
+    match way.next {
+        Next::Corner(bend) => {
             let distance = (floor.place(bend) - p).norm();
-            around(floor, (p, distance), (bend, borders), clearance)
+            around(
+                floor,
+                (p, distance),
+                (bend, way.borders.unwrap()),
+                clearance,
+            )
         }
         Next::Goal(point) | Next::Out(point) => direction(point - p),
     }
@@ -144,7 +149,7 @@ fn an_agent_in_a_passage_too_narrow_finds_the_way_out() {
             let t = floor.locate(p).unwrap();
             let way = map.way(&floor, p, t, held).unwrap();
             held = way.next.bend();
-            p += heading(&floor, p, &way.next, 0.1) * 0.02;
+            p += heading(&floor, p, &way, 0.1) * 0.02;
         }
         assert!(
             (p - Vector::new(19.0, 5.1)).norm() < 0.1,
@@ -268,13 +273,13 @@ fn a_lone_walker_arrives_and_hardly_leaves_the_shortest_way() {
                 continue;
             };
             let (mut v, mut walked, mut frame) = (Vector::zeros(), 0.0, 0);
-            let mut next = Next::Goal(p);
+            let mut way = map.way_from(&floor, p).unwrap();
             while (goal - p).norm() > 0.3 {
                 if frame % 5 == 0 {
                     let t = floor.locate(p).unwrap();
-                    next = map.way(&floor, p, t, next.bend()).unwrap().next;
+                    way = map.way(&floor, p, t, way.next.bend()).unwrap();
                 }
-                let preferred = heading(&floor, p, &next, 0.24) * 1.4;
+                let preferred = heading(&floor, p, &way, 0.24) * 1.4;
                 v += (preferred - v) * (0.02 / 0.5);
                 match floor.locate(p + v * 0.02) {
                     Some(_) => p += v * 0.02,

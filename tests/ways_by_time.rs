@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use sandbox::engine::math::Vector;
 use sandbox::engine::simulation::Simulation;
-use sandbox::engine::ways::Step;
+use sandbox::engine::ways::Side;
 use serde_json::json;
 
 use crate::common::simulated::start;
@@ -23,7 +23,7 @@ const DOORS: [[f64; 2]; 2] = [[4.4, 5.4], [14.2, 16.0]];
 struct Gate {
     x: f64,
     ends: [f64; 2],
-    step: Step,
+    side: Option<Side>,
     /// People that have passed since the last second; in a crowd, and for how long, seconds: both fade.
     passes: f64,
     passed: f64,
@@ -105,16 +105,16 @@ fn gates(simulation: &Simulation) -> [Gate; 2] {
     assert_eq!(rooms.openings().len(), 2);
     DOORS.map(|ends| {
         let middle = 0.5 * (ends[0] + ends[1]);
-        let is_here = |&step: &Step| {
-            let away = rooms.opening(step).middle().y - middle;
-            away.abs() < 1e-6 && rooms.ahead(step).x > 0.0
+        let is_here = |&side: &Side| {
+            let away = rooms.opening(side).middle().y - middle;
+            away.abs() < 1e-6 && rooms.ahead(side).x > 0.0
         };
-        let step = (0..rooms.steps()).find(is_here).unwrap();
-        let x = rooms.opening(step).middle().x;
+        let side = rooms.sides().find(is_here);
+        let x = rooms.opening(side.unwrap()).middle().x;
         Gate {
             x,
             ends,
-            step,
+            side,
             ..Gate::default()
         }
     })
@@ -196,8 +196,13 @@ fn times_and_flows_follow_from_positions_and_choices() {
         simulation.step().unwrap();
         let agents = simulation.frame().agents;
         for (&id, plan) in agents.id.iter().zip(&agents.plan) {
-            let step = plan.and_then(|plan| plan.toward);
-            toward.insert(id, gates.iter().position(|gate| Some(gate.step) == step));
+            let side = plan.and_then(|plan| plan.toward);
+            toward.insert(
+                id,
+                gates
+                    .iter()
+                    .position(|gate| side.is_some() && gate.side == side),
+            );
         }
         if !is_second {
             continue;
@@ -211,7 +216,7 @@ fn times_and_flows_follow_from_positions_and_choices() {
         let waits = simulation.waits();
         for gate in &gates {
             let expected = gate.bins.len() as f64 / gate.flow(per_meter);
-            let shown = waits[gate.step as usize / 2];
+            let shown = waits[gate.side.unwrap().opening()];
             assert!(
                 (shown - expected).abs() < 1e-6,
                 "{shown} s, not {expected} s at {} s",
@@ -221,13 +226,13 @@ fn times_and_flows_follow_from_positions_and_choices() {
         }
         for i in agents.present().filter(|&i| agents.position[i].x < WALL) {
             let p = agents.position[i];
-            let Some(comparison) = simulation.comparison(i) else {
+            let Some(decision) = simulation.way_decision(i) else {
                 continue;
             };
             let shortest = usize::from(gates[1].exact(p) < gates[0].exact(p));
             for (k, gate) in gates.iter().enumerate() {
-                let mut seen = comparison.outlooks.iter();
-                let seen = seen.find(|one| one.step == Some(gate.step)).unwrap();
+                let mut seen = decision.prospects.iter();
+                let seen = seen.find(|one| one.side == gate.side).unwrap();
                 let (length, beyond) = (gate.distance(p), EXIT - gate.x);
                 let through = (length / OWN).max(gate.clear(seen.length, gate.flow(per_meter)));
                 // Over the middle of the opening, or the shortest way itself.
@@ -242,7 +247,7 @@ fn times_and_flows_follow_from_positions_and_choices() {
                     "{seen:?}, not {length} m at {at} s"
                 );
                 assert!(
-                    (seen.total - total).abs() < 2e-3,
+                    (seen.expected.total_secs - total).abs() < 2e-3,
                     "{seen:?} at {p}, not {total} s at {at} s"
                 );
                 compared += 1;

@@ -142,6 +142,6 @@ impl WayField {
 fn number(way: Way) -> u32 {
     match way.next {
         Next::Goal(_) | Next::Out(_) => GOAL,
-        Next::Corner { bend, .. } => bend.index() as u32,
+        Next::Corner(bend) => bend.index() as u32,
     }
 }

@@ -105,6 +105,11 @@ pub fn greatest<T>(items: &[T], number: impl Fn(&T) -> f64) -> f64 {
     most.into_iter().fold(last, greater)
 }
 
+/// The memory that an array takes, bytes.
+pub fn bytes_of<T>(array: &Vec<T>) -> usize {
+    array.capacity() * size_of::<T>()
+}
+
 /// Whether both coordinates are finite.
 pub fn is_finite(v: Vector) -> bool {
     v.x.is_finite() && v.y.is_finite()

@@ -8,38 +8,39 @@ mod digest;
 mod doors;
 mod entrances;
 mod evaluate;
+mod expected;
 mod goals;
 mod integrate;
 mod legs;
 mod limited;
 mod loads;
 mod passing;
-mod place_state;
 mod plans;
+mod progress;
 mod queues;
 mod schedule;
 mod schemes;
-mod sight;
 mod situation;
 mod stages;
 mod state;
+mod stream;
 mod times;
 mod trips;
 
-pub use bound::Stream;
-pub use choice::{Decision, Expected, Prospect, Reason};
+pub use choice::{Decision, Prospect, Reason};
 pub use closed::Closed;
 pub use entrances::Backlog;
+pub use expected::Expected;
 pub use goals::{Absent, GoalError};
 pub use limited::{Limited, SPOT_RADIUS};
 pub use passing::{BEFORE_WALLS, WALKS_ON};
-pub use place_state::PlaceState;
-pub use plans::Comparison;
+pub use plans::WayDecision;
+pub use progress::{PlaceState, Progress};
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};
-pub use times::Outlook;
-pub use trips::Progress;
+pub use stream::Stream;
+pub use times::WayProspect;
 
 use std::sync::LazyLock;
 
@@ -267,6 +268,7 @@ impl Simulation {
 
     fn compute(&mut self) -> Result<(), Fault> {
         self.follow_schedule()?; // entries and pushes, coarse
+        self.count_streams(); // once per second
         self.follow_journeys(); // coarse
         self.follow_plans(); // coarse
         self.update_neighbors(); // 1

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::simulation::{Closed, Outlook, Simulation};
+use crate::simulation::{Closed, Simulation, WayProspect};
 
 /// The choice of an agent between ways.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -46,55 +46,51 @@ pub struct WaySeen {
 impl WayChoice {
     /// The choice of agent `i`; `None` if it does not choose between ways.
     pub fn of(simulation: &Simulation, i: usize) -> Option<Self> {
-        let comparison = simulation.comparison(i)?;
-        let plan = comparison.plan;
+        let decision = simulation.way_decision(i)?;
+        let plan = decision.plan;
         let scene = simulation.scene();
         let rooms = scene.rooms()?;
-        let name = |outlook: &Outlook| {
-            let Some(step) = outlook.step else {
+        let name = |way: &WayProspect| {
+            let Some(side) = way.side else {
                 return "its goal in this room".to_owned();
             };
-            let opening = rooms.opening(step);
+            let opening = rooms.opening(side);
             match opening.door() {
                 Some(door) => format!("door `{}`", scene.journeys.places[usize::from(door)].name),
                 None => {
-                    let at = opening.middle();
-                    format!(
-                        "opening of {:.2} m at ({:.2}, {:.2})",
-                        opening.width(),
-                        at.x,
-                        at.y
-                    )
+                    let (width, at) = (opening.width(), opening.middle());
+                    format!("opening of {width:.2} m at ({:.2}, {:.2})", at.x, at.y)
                 }
             }
         };
         let by_time = scene.by_time();
-        let mut outlooks = comparison.outlooks;
-        outlooks.sort_by(|a, b| a.total.total_cmp(&b.total));
-        let is_quickest = outlooks
+        let mut prospects = decision.prospects;
+        prospects.sort_by(|a, b| a.expected.total_secs.total_cmp(&b.expected.total_secs));
+        let is_quickest = prospects
             .first()
-            .is_some_and(|best| best.step == plan.toward);
-        let ways = outlooks.iter().map(|outlook| {
-            let closed = outlook
-                .step
-                .and_then(|step| simulation.closed_way(i, plan.goal, Some(step)));
+            .is_some_and(|best| best.side == plan.toward);
+        let ways = prospects.iter().map(|way| {
+            let closed = way
+                .side
+                .and_then(|side| simulation.closed_way(i, plan.goal, Some(side)));
+            let (expected, has_times) = (way.expected, by_time && closed.is_none());
             WaySeen {
-                through: name(outlook),
-                length: outlook.length,
-                ahead: outlook.ahead,
-                flow_per_sec: Some(outlook.flow).filter(|flow| by_time && flow.is_finite()),
-                through_secs: Some(outlook.until_through).filter(|_| by_time && closed.is_none()),
-                total_secs: Some(outlook.total).filter(|_| by_time && closed.is_none()),
+                through: name(way),
+                length: way.length,
+                ahead: expected.ahead,
+                flow_per_sec: expected.flow_per_sec.filter(|_| by_time),
+                through_secs: Some(expected.through_secs()).filter(|_| has_times),
+                total_secs: Some(expected.total_secs).filter(|_| has_times),
                 closed,
-                shortest: outlook.step == comparison.shortest,
-                taken: outlook.step == plan.toward,
+                shortest: way.side == decision.shortest,
+                taken: way.side == plan.toward,
             }
         });
         Some(Self {
             by_time,
-            reason: match (outlooks.len(), is_quickest) {
+            reason: match (prospects.len(), is_quickest) {
                 (0 | 1, _) => "there is no other",
-                _ if !by_time && plan.toward == comparison.shortest => "it is the shortest",
+                _ if !by_time && plan.toward == decision.shortest => "it is the shortest",
                 _ if !by_time => "the shortest is closed",
                 (_, true) => "it takes the least time",
                 (_, false) => "no other was clearly quicker when the agent last compared them",

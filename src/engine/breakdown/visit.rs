@@ -153,13 +153,15 @@ impl Why {
     fn of(simulation: &Simulation, i: usize, (trip, decision): (&Trip, &Decision)) -> Self {
         let clock = simulation.frame().clock;
         let again = Some(trip.chooses_at).filter(|&frame| frame < u64::MAX);
-        let prospects = decision.prospects.iter();
+        let journey = &simulation.scene().journeys.journeys[usize::from(trip.journey)];
+        let choice = &journey.stage(trip.stage).choice;
+        let prospects = decision.prospects.iter().enumerate();
         Self {
             choice: name(simulation, decision.place),
             reason: in_words(decision.reason),
             looks_again_secs: again.map(|frame| clock.time_at(frame)),
             alternatives: prospects
-                .map(|prospect| Alternative::of(simulation, i, prospect))
+                .map(|(k, prospect)| Alternative::of(simulation, i, prospect, choice.weight(k)))
                 .collect(),
         }
     }
@@ -178,14 +180,15 @@ fn in_words(reason: Reason) -> &'static str {
 }
 
 impl Alternative {
-    fn of(simulation: &Simulation, i: usize, prospect: &Prospect) -> Self {
+    fn of(simulation: &Simulation, i: usize, prospect: &Prospect, weight: Option<f64>) -> Self {
+        let state = &simulation.progress().places[usize::from(prospect.place)];
         let way_closed = simulation.closed_way(i, prospect.place, None);
         Self {
             place: name(simulation, prospect.place),
             open: prospect.open,
             length: Some(prospect.length).filter(|length| length.is_finite()),
-            bound: prospect.bound,
-            weight: prospect.weight,
+            bound: state.bound,
+            weight,
             expected: prospect.expected.filter(|_| way_closed.is_none()),
             way_closed,
         }

@@ -8,6 +8,7 @@
 mod assemble;
 mod clearance;
 mod corners;
+mod error;
 mod hidden_region;
 mod polygon;
 mod ring;
@@ -18,9 +19,10 @@ mod walls;
 
 pub use assemble::assemble;
 pub use clearance::{Clear, LineAmongWalls};
+pub use error::PolygonError;
 pub use hidden_region::HiddenRegion;
-pub use polygon::{Area, Polygon, PolygonError};
-pub use ring::Ring;
+pub use polygon::Polygon;
+pub use ring::{Area, Ring};
 pub use ring_index::AreaIndex;
 pub use shadows::visible_parts;
 pub use wall::{NearestPoint, Wall, WallPart};

@@ -2,7 +2,8 @@
 
 use parry2d::bounding_volume::Aabb;
 
-use super::ring::{Ring, encloses, signed_area};
+use super::error::PolygonError;
+use super::ring::{Area, Ring, encloses, signed_area};
 use super::ring_index::{AreaIndex, RingIndex};
 use super::{bounds_of, index_of};
 use crate::math::{Vector, sides};
@@ -12,72 +13,6 @@ use crate::math::{Vector, sides};
 /// edges that they touch.
 const TOUCHING: f64 = 1.5e-6;
 const TOUCHING_PART: f64 = 1e-8;
-
-/// Why points or rings do not form an obstacle.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PolygonError {
-    /// Fewer than three points: the number given.
-    #[error("a polygon needs at least 3 points, this one has {0}")]
-    TooFewPoints(usize),
-    /// The index of the non-finite point.
-    #[error("point {0} is not finite")]
-    NotFinite(usize),
-    /// The indices of the equal points.
-    #[error("points {0} and {1} are the same; remove one")]
-    RepeatedPoint(usize, usize),
-    /// All points lie on one line.
-    #[error("the polygon encloses no area; its points lie on one line")]
-    NoArea,
-    /// The indices of the first points of the two edges that meet.
-    #[error(
-        "the polygon crosses or touches itself: the edge from point {0} meets the edge from point {1}; \
-         move a point, or make two obstacles of it"
-    )]
-    SelfIntersection(usize, usize),
-    /// The first points of the two edges that cross, meters.
-    #[error(
-        "two rings cross: the edge from ({}, {}) and the edge from ({}, {})", .0.x, .0.y, .1.x, .1.y
-    )]
-    Crossing(Vector, Vector),
-    /// The hole's first point, meters.
-    #[error(
-        "the hole that begins at ({}, {}) does not lie in its outline, or lies in another hole", .0.x, .0.y
-    )]
-    StrayHole(Vector),
-    /// The first point of one of the overlapping areas, meters.
-    #[error("the area that begins at ({}, {}) overlaps another; unite them", .0.x, .0.y)]
-    Overlap(Vector),
-    /// No areas to walk in.
-    #[error("there is no area to walk in")]
-    NoFloor,
-}
-
-/// A part of the plane, inside its outline and outside its holes. The holes lie in the outline and may touch it
-/// and each other.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Area {
-    /// The outline.
-    pub exterior: Ring,
-    /// The holes cut out of it.
-    pub holes: Vec<Ring>,
-}
-
-impl Area {
-    /// The outline, then the holes.
-    pub fn rings(&self) -> impl Iterator<Item = &Ring> {
-        std::iter::once(&self.exterior).chain(&self.holes)
-    }
-
-    /// The area in m², without the holes.
-    pub fn area(&self) -> f64 {
-        self.exterior.area() - self.holes.iter().map(Ring::area).sum::<f64>()
-    }
-
-    /// Whether `p` lies in the area. Within rounding of the boundary either answer is possible.
-    pub fn contains(&self, p: Vector) -> bool {
-        self.exterior.contains(p) && !self.holes.iter().any(|hole| hole.contains(p))
-    }
-}
 
 /// An obstacle: a body with straight sides, or everything around the floor that people walk on.
 ///

@@ -1,9 +1,10 @@
-//! Closed outlines: validated once, always counterclockwise.
+//! Closed outlines, validated once and always counterclockwise, and areas between them.
 
 use parry2d::bounding_volume::Aabb;
 use parry2d::utils::{point_in_poly2d, segments_intersection2d};
 
-use super::{PolygonError, bounds_of, index_of, to_parry};
+use super::error::PolygonError;
+use super::{bounds_of, index_of, to_parry};
 use crate::math::{Vector, is_finite, perpendicular, sides};
 
 /// A fraction of a length, not ½: corners of other rings often lie exactly in the middle of an edge.
@@ -95,6 +96,33 @@ impl Ring {
     /// The corners in counterclockwise order: the enclosed area is on the left.
     pub(super) fn into_points(self) -> Vec<Vector> {
         self.points
+    }
+}
+
+/// A part of the plane, inside its outline and outside its holes. The holes lie in the outline and may touch it
+/// and each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Area {
+    /// The outline.
+    pub exterior: Ring,
+    /// The holes cut out of it.
+    pub holes: Vec<Ring>,
+}
+
+impl Area {
+    /// The outline, then the holes.
+    pub fn rings(&self) -> impl Iterator<Item = &Ring> {
+        std::iter::once(&self.exterior).chain(&self.holes)
+    }
+
+    /// The area in m², without the holes.
+    pub fn area(&self) -> f64 {
+        self.exterior.area() - self.holes.iter().map(Ring::area).sum::<f64>()
+    }
+
+    /// Whether `p` lies in the area. Within rounding of the boundary either answer is possible.
+    pub fn contains(&self, p: Vector) -> bool {
+        self.exterior.contains(p) && !self.holes.iter().any(|hole| hole.contains(p))
     }
 }
 

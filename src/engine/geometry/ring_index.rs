@@ -4,7 +4,8 @@ use std::cell::OnceCell;
 
 use parry2d::partitioning::Bvh;
 
-use super::{Area, Ring, bounds_of, index_of};
+use super::ring::{Area, Ring};
+use super::{bounds_of, index_of};
 use crate::math::{Vector, sides};
 
 /// Rings with more corners than this get an index of their edges.

@@ -68,6 +68,16 @@ pub enum Choice {
     Fewest,
 }
 
+impl Choice {
+    /// The weight of place `k`, with shares.
+    pub fn weight(&self, k: usize) -> Option<f64> {
+        match self {
+            Self::Shares(weights) => weights.get(k).copied(),
+            _ => None,
+        }
+    }
+}
+
 /// A change of a place at a given time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
@@ -128,6 +138,11 @@ impl Journeys {
     pub fn has_doors(&self) -> bool {
         let mut places = self.places.iter();
         places.any(|place| matches!(place.kind, Kind::Door(_)))
+    }
+
+    /// Whether agents go on trips, or pass doors.
+    pub fn has_trips(&self) -> bool {
+        !self.journeys.is_empty() || self.has_doors()
     }
 
     /// Whether some agents choose the quickest place.

@@ -29,11 +29,8 @@ impl Fixed {
             let same = |&i: &usize| behavior(i) == behavior(start);
             let end = (start + 1..range.end).find(|i| !same(i));
             let end = end.unwrap_or(range.end);
-            take(
-                start..end,
-                self.blend(agents, start),
-                self.change(agents, start),
-            );
+            let (blend, change) = (self.blend(agents, start), self.change(agents, start));
+            take(start..end, blend, change);
             start = end;
         }
     }

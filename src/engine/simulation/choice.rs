@@ -1,16 +1,17 @@
 //! How agents choose between places.
 
 use rand::Rng;
-use serde::Serialize;
+use rayon::prelude::*;
 
-use super::plans::is_clearly_quicker;
-use super::sight::Seen;
-use super::{Crowd, PlaceState, Simulation, bound};
+use super::bound::{FLOW_PER_METER_OF_EXITS, width};
+use super::expected::{Expected, Line, is_clearly_quicker, least_or_kept};
+use super::{Crowd, PlaceState, Simulation};
 use crate::journeys::{Choice, Journey, JourneyStage, Kind, Place, Status, Trip};
 use crate::math::Vector;
+use crate::neighbors::BLOCK;
 use crate::random::{self, Purpose};
 use crate::scene::Scene;
-use crate::ways::{Destination, SLACK};
+use crate::ways::{Destination, SLACK, WaysOut};
 
 /// Agents that choose the nearest place choose again after this time, seconds.
 const NEAREST_EVERY: f64 = 1.0;
@@ -22,11 +23,8 @@ impl Simulation {
     pub fn decision(&self, i: usize) -> Option<Decision> {
         let trip = self.crowd.agents.trip.get(i)?.as_ref()?;
         let chooser = Chooser {
-            scene: &self.fixed.scene,
-            crowd: &self.crowd,
-            agent: i,
             is_asked: true,
-            seen: None,
+            ..Chooser::of(&self.fixed.scene, &self.crowd, i)
         };
         (trip.status == Status::Walking).then(|| chooser.decide(trip, Some(trip.place)))
     }
@@ -44,6 +42,16 @@ pub(super) struct Chooser<'a> {
     pub(super) seen: Option<&'a Seen>,
 }
 
+/// What an agent that is due to choose sees, whatever others choose before.
+pub(super) struct Seen {
+    /// The number of the stage in its journey.
+    pub(super) stage: u16,
+    /// The lengths of the ways to its places, meters.
+    pub(super) lengths: Vec<f64>,
+    /// The ways out of its room that lead to its place, if it compares times.
+    pub(super) ways_out: Option<WaysOut>,
+}
+
 /// A place of an agent's stage, as the agent sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prospect {
@@ -53,29 +61,8 @@ pub struct Prospect {
     pub open: bool,
     /// The length of the way there, meters; infinite if the agent cannot get there.
     pub length: f64,
-    /// The number of agents that are bound for it.
-    pub bound: u32,
-    /// Its weight, for a stage with shares.
-    pub weight: Option<f64>,
     /// The expected times, for a stage where agents choose the quickest place, if the agent can get there.
     pub expected: Option<Expected>,
-}
-
-/// The times that an agent expects for passing a place and walking to its next stage.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Expected {
-    /// Walking to the place, seconds.
-    pub walking_secs: f64,
-    /// Agents bound for the place that are nearer to it.
-    pub ahead: u32,
-    /// The flow through the place, P/s; `None` if it is unlimited.
-    pub flow_per_sec: Option<f64>,
-    /// Waiting until these agents have passed, seconds.
-    pub waiting_secs: f64,
-    /// Walking from the place to the next stage, seconds.
-    pub onward_secs: f64,
-    /// The total time, seconds: the crowd ahead passes while the agent walks.
-    pub total_secs: f64,
 }
 
 /// The decision of an agent about the place of its stage.
@@ -108,7 +95,26 @@ pub enum Reason {
     Fewest,
 }
 
-impl Chooser<'_> {
+impl Prospect {
+    /// The expected time, seconds; infinite without one.
+    fn total_secs(&self) -> f64 {
+        self.expected
+            .map_or(f64::INFINITY, |expected| expected.total_secs)
+    }
+}
+
+impl<'a> Chooser<'a> {
+    /// An agent that has seen nothing yet and only decides.
+    pub(super) fn of(scene: &'a Scene, crowd: &'a Crowd, agent: usize) -> Self {
+        Self {
+            scene,
+            crowd,
+            agent,
+            is_asked: false,
+            seen: None,
+        }
+    }
+
     /// Chooses the place for the current stage of `trip`. Also returns the frame in which the agent chooses again.
     /// `before` is the place that it walks to now.
     pub(super) fn choose(&self, trip: &Trip, before: Option<u16>) -> (u16, u64) {
@@ -140,22 +146,22 @@ impl Chooser<'_> {
         if self.scene.by_time() {
             self.expect_waits(&mut prospects, before);
         }
-        let of = |place: u16| prospects.iter().find(|prospect| prospect.place == place);
+        let all = prospects.iter();
+        let possible = all.filter(|prospect| open.contains(&prospect.place));
         let (place, reason) = match &stage.choice {
+            _ if open.len() == 1 => (open[0], Reason::Only),
             Choice::Nearest => {
-                let length = |place| of(place).map_or(f64::INFINITY, |prospect| prospect.length);
-                let is_shorter = |new, old| new < old - SLACK;
-                match best(&open, before, length, is_shorter) {
-                    (place, true) => (place, Reason::NotClearlyNearer),
-                    (place, false) => (place, Reason::Nearest),
+                let lengths = possible.map(|prospect| (prospect.place, prospect.length));
+                match least_or_kept(lengths, before, |new, old| new < old - SLACK) {
+                    Some((place, true)) => (place, Reason::NotClearlyNearer),
+                    least => (least.map_or(open[0], |least| least.0), Reason::Nearest),
                 }
             }
             Choice::Quickest => {
-                let expected = |place| of(place).and_then(|prospect| prospect.expected);
-                let time = |place| expected(place).map_or(f64::INFINITY, |e| e.total_secs);
-                match best(&open, before, time, is_clearly_quicker) {
-                    (place, true) => (place, Reason::NotClearlyQuicker),
-                    (place, false) => (place, Reason::Quickest),
+                let times = possible.map(|prospect| (prospect.place, prospect.total_secs()));
+                match least_or_kept(times, before, is_clearly_quicker) {
+                    Some((place, true)) => (place, Reason::NotClearlyQuicker),
+                    least => (least.map_or(open[0], |least| least.0), Reason::Quickest),
                 }
             }
             Choice::Shares(weights) => {
@@ -165,14 +171,8 @@ impl Chooser<'_> {
             Choice::Fewest => {
                 let bound = |place: u16| self.crowd.progress.places[usize::from(place)].bound;
                 let fewest = open.iter().copied().min_by_key(|&place| bound(place));
-                let place = before.or(fewest).unwrap_or(stage.places[0]);
-                (place, Reason::Fewest)
+                (before.or(fewest).unwrap_or(open[0]), Reason::Fewest)
             }
-        };
-        let reason = if open.len() == 1 {
-            Reason::Only
-        } else {
-            reason
         };
         Decision {
             place,
@@ -196,13 +196,8 @@ impl Chooser<'_> {
 
     /// The random numbers of this choice.
     fn random(&self, trip: &Trip) -> impl Rng + use<> {
-        let id = self.crowd.agents.id[self.agent];
-        random::stream(
-            self.scene.seed,
-            Purpose::Choice,
-            id,
-            u64::from(trip.choices),
-        )
+        let (id, choice) = (self.crowd.agents.id[self.agent], u64::from(trip.choices));
+        random::stream(self.scene.seed, Purpose::Choice, id, choice)
     }
 
     /// A place of `open` at random.
@@ -226,48 +221,36 @@ impl Chooser<'_> {
         let position = self.crowd.agents.position[self.agent];
         let lengths = self.seen.map(|seen| seen.lengths.clone());
         let lengths = lengths.unwrap_or_else(|| self.lengths(position, places));
-        let seen = places.iter().zip(lengths).enumerate();
-        seen.map(|(k, (&place, length))| self.see(trip, k, (place, length)))
-            .collect()
-    }
-
-    /// Place k of the current stage of `trip`, to which the way has this length, meters.
-    fn see(&self, trip: &Trip, k: usize, (place, length): (u16, f64)) -> Prospect {
-        let stage = self.stage(trip);
         let onward = self.journey(trip).stages.get(usize::from(trip.stage) + 1);
-        Prospect {
-            place,
-            open: self.is_open(place),
-            length,
-            bound: self.crowd.progress.places[usize::from(place)].bound,
-            weight: match &stage.choice {
-                Choice::Shares(weights) => weights.get(k).copied(),
-                _ => None,
-            },
-            expected: match stage.choice {
-                Choice::Quickest if length.is_finite() => Some(self.expect(place, length, onward)),
-                _ => None,
-            },
-        }
+        let is_timed = self.stage(trip).choice == Choice::Quickest;
+        let see = |(&place, length): (&u16, f64)| {
+            let expects = is_timed && length.is_finite();
+            Prospect {
+                place,
+                open: self.is_open(place),
+                length,
+                expected: expects.then(|| self.expect(place, length, onward)),
+            }
+        };
+        places.iter().zip(lengths).map(see).collect()
     }
 
-    /// Adds the waits on the ways to the expected times. A place that is not clearly quicker than place `before`
-    /// without them is not quicker with them: its time stays too short unless it is asked for.
+    /// Adds the waits on the ways to the expected times. Waits only lengthen times, so a place that is not clearly
+    /// quicker than place `before` without them is skipped unless it is asked for: its time is then a lower bound.
     fn expect_waits(&self, prospects: &mut [Prospect], before: Option<u16>) {
-        let mut known = self.seen.and_then(|seen| seen.leaving.clone());
+        let mut known = self.seen.and_then(|seen| seen.ways_out.clone());
         let mut wait = |prospect: &mut Prospect| {
             let to = (self.agent, prospect.place, prospect.length);
             let expected = prospect.expected.as_mut()?;
             if let Some(walking) = self.crowd.time_to(self.scene, to, &mut known) {
-                expected.walking_secs = walking;
-                expected.total_secs = walking.max(expected.waiting_secs) + expected.onward_secs;
+                *expected = expected.walking(walking);
             }
             Some(expected.total_secs)
         };
         let is_kept = |prospect: &&mut Prospect| Some(prospect.place) == before;
         let kept = prospects.iter_mut().find(is_kept).and_then(&mut wait);
         for prospect in prospects {
-            let least = prospect.expected.map_or(f64::INFINITY, |e| e.total_secs);
+            let least = prospect.total_secs();
             let can_win = kept.is_none_or(|kept| is_clearly_quicker(least, kept));
             if Some(prospect.place) != before && (can_win || self.is_asked) {
                 wait(prospect);
@@ -287,8 +270,8 @@ impl Chooser<'_> {
     pub(super) fn length(&self, place: u16) -> f64 {
         let position = self.crowd.agents.position[self.agent];
         let ways = self.scene.ways.as_ref();
-        let way = ways.and_then(|ways| ways.way(position, Destination::Place(place)));
-        way.map_or(f64::INFINITY, |way| way.length)
+        let length = ways.map(|ways| ways.length(position, Destination::Place(place)));
+        length.unwrap_or(f64::INFINITY)
     }
 
     /// The times that the agent expects for a place at the end of a way of this length, meters, without waits on it,
@@ -299,26 +282,20 @@ impl Chooser<'_> {
         let speed = speed.max(f64::MIN_POSITIVE);
         let state = &self.crowd.progress.places[usize::from(place)];
         let definition = &self.scene.journeys.places[usize::from(place)];
-        let ahead = state.stream.nearer_than(length);
-        let flow = self.flow(definition, state);
+        let line = Line {
+            length,
+            stream: Some(&state.stream),
+            oncoming: 0,
+            flow: self.flow(definition, state),
+        };
         let onward = onward.map_or(0.0, |stage| {
             let from = definition.nearest_point(self.crowd.agents.position[self.agent]);
             let lengths = self.lengths(from, &stage.places).into_iter();
             let shortest = lengths.filter(|length| length.is_finite()).reduce(f64::min);
             shortest.unwrap_or(0.0)
         });
-        let walking = length / speed;
-        let of_others = speed.max(self.scene.preferred_speed);
-        let waiting = state.stream.clear_after(length, of_others, flow);
-        let onward = onward / speed;
-        Expected {
-            walking_secs: walking,
-            ahead,
-            flow_per_sec: Some(flow).filter(|flow| flow.is_finite()),
-            waiting_secs: waiting,
-            onward_secs: onward,
-            total_secs: walking.max(waiting) + onward,
-        }
+        let waiting = line.waiting(speed.max(self.scene.preferred_speed));
+        line.expected(length / speed, waiting, &[onward / speed])
     }
 
     /// The flow that an agent expects through a place, P/s.
@@ -329,12 +306,37 @@ impl Chooser<'_> {
             Kind::Queue(queue) => return f64::from(queue.servers) / queue.mean_service,
             Kind::Disk { .. } | Kind::Waiting(_) => return f64::INFINITY,
         };
-        let per_meter = self
-            .crowd
-            .flow_per_meter()
-            .max(bound::FLOW_PER_METER_OF_EXITS);
-        let expected = per_meter * bound::width(place).unwrap_or(0.0);
+        let per_meter = self.crowd.flow_per_meter().max(FLOW_PER_METER_OF_EXITS);
+        let expected = per_meter * width(place).unwrap_or(0.0);
         state.stream.flow(expected.min(most)).min(most)
+    }
+}
+
+impl Crowd {
+    /// What agents see that are due to choose, before the first of them chooses.
+    pub(super) fn seen_by(&self, scene: &Scene, due: &[usize]) -> Vec<Option<Seen>> {
+        let seen = due.par_iter().with_min_len(BLOCK).map(|&agent| {
+            let trip = self.agents.trip[agent].as_ref();
+            let chooses = |trip: &&Trip| trip.chooses_at <= self.clock.frame();
+            let trip = trip
+                .filter(|trip| trip.status == Status::Walking)
+                .filter(chooses)?;
+            let chooser = Chooser::of(scene, self, agent);
+            let stage = chooser.stage(trip);
+            let lengths = chooser.lengths(self.agents.position[agent], &stage.places);
+            let compares = matches!(stage.choice, Choice::Quickest);
+            let mut known = stage.places.iter().zip(&lengths).filter(|_| compares);
+            let known = known.find(|(place, length)| **place == trip.place && length.is_finite());
+            let ways_out = known.and_then(|(&place, &length)| {
+                self.ways_out_to(scene, (agent, place, length), None)
+            });
+            Some(Seen {
+                stage: trip.stage,
+                lengths,
+                ways_out,
+            })
+        });
+        seen.collect()
     }
 }
 
@@ -347,21 +349,4 @@ fn candidates(prospects: &[Prospect]) -> Vec<u16> {
     let is_any_open = reached.clone().any(|prospect| prospect.open);
     let chosen = reached.filter(|prospect| prospect.open || !is_any_open);
     chosen.map(|prospect| prospect.place).collect()
-}
-
-/// The place with the least value, but `before` unless that place is `better`. Also returns whether `before` is kept
-/// although another place has the least value.
-fn best(
-    places: &[u16],
-    before: Option<u16>,
-    value: impl Fn(u16) -> f64,
-    better: impl Fn(f64, f64) -> bool,
-) -> (u16, bool) {
-    let values = places.iter().map(|&place| (place, value(place)));
-    let least = values.min_by(|a, b| a.1.total_cmp(&b.1));
-    let (place, least) = least.unwrap_or((places[0], f64::INFINITY));
-    match before {
-        Some(before) if !better(least, value(before)) => (before, before != place),
-        _ => (place, false),
-    }
 }

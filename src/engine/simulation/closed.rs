@@ -6,7 +6,7 @@ use super::Simulation;
 use crate::journeys::{Change, ChangeKind};
 use crate::math::Vector;
 use crate::scene::Scene;
-use crate::ways::{Rooms, Step};
+use crate::ways::{Rooms, Side};
 
 /// A way goes on this far behind an opening, meters.
 const BEYOND: f64 = 1e-3;
@@ -28,22 +28,21 @@ impl std::fmt::Display for Closed {
 }
 
 impl Simulation {
-    /// Whether closed doors block every way of agent `i` to a path map's goal, or every one that begins with `step`.
-    pub fn closed_way(&self, i: usize, goal: u16, step: Option<Step>) -> Option<Closed> {
+    /// Whether closed doors block every way of agent `i` to a path map's goal, or every one that leaves by `side`.
+    pub fn closed_way(&self, i: usize, goal: u16, side: Option<Side>) -> Option<Closed> {
         let (scene, goal) = (&self.fixed.scene, usize::from(goal));
         let rooms = scene.rooms()?;
         let p = self.crowd.agents.position[i];
         let here = rooms.floor.locate_or_nearest(None, p)?;
-        if step.is_none() && rooms.length_to_goal(p, here, goal).is_some() {
+        if side.is_none() && rooms.length_to_goal(p, here, goal).is_some() {
             return None;
         }
-        let steps = match &step {
-            Some(step) => std::slice::from_ref(step),
-            None => rooms.steps_out(rooms.room(here)),
+        let sides = match &side {
+            Some(side) => std::slice::from_ref(side),
+            None => rooms.sides_in(rooms.room(here)),
         };
-        let places = self.crowd.progress.places.iter();
-        let mut open: Vec<bool> = places.map(|place| place.open).collect();
-        let is_blocked = |open: &[bool]| blocks(rooms, (steps, goal), open);
+        let mut open = self.open_places();
+        let is_blocked = |open: &[bool]| blocks(rooms, (sides, goal), open);
         if !is_blocked(&open) {
             return None;
         }
@@ -56,39 +55,37 @@ impl Simulation {
             }),
         })
     }
-}
 
-impl Simulation {
-    /// The points of the shortest way of agent `i` to a path map's goal that begins with `step` and then avoids the
-    /// doors that are closed now, as far as that is possible, meters.
-    pub fn way_through(&self, i: usize, goal: u16, step: Step) -> Option<Vec<Vector>> {
-        let (rooms, goal) = (self.fixed.scene.rooms()?, usize::from(goal));
+    /// Which places are open now.
+    fn open_places(&self) -> Vec<bool> {
         let places = self.crowd.progress.places.iter();
-        let open: Vec<bool> = places.map(|place| place.open).collect();
-        let onward = rooms.onward(goal, |next, length| {
-            match next.is_some_and(|next| is_shut(rooms, next, &open)) {
-                true => f64::INFINITY,
-                false => length,
-            }
-        });
-        let (mut p, mut step) = (self.crowd.agents.position[i], step);
+        places.map(|place| place.open).collect()
+    }
+
+    /// The points of the shortest way of agent `i` to a path map's goal that leaves by `side` and then avoids the
+    /// doors that are closed now, as far as that is possible, meters.
+    pub fn way_through(&self, i: usize, goal: u16, side: Side) -> Option<Vec<Vector>> {
+        let (rooms, goal) = (self.fixed.scene.rooms()?, usize::from(goal));
+        let open = self.open_places();
+        let onward = lengths(rooms, goal, &open);
+        let (mut p, mut side) = (self.crowd.agents.position[i], side);
         let mut here = rooms.floor.locate_or_nearest(None, p)?;
         let mut points = Vec::new();
-        for _ in 0..rooms.steps() {
-            points.extend(rooms.course((p, here), goal, Some(step)));
-            p = points.last()? + rooms.ahead(step) * BEYOND;
+        for _ in 0..rooms.sides().len() {
+            points.extend(rooms.course((p, here), goal, Some(side)));
+            p = points.last()? + rooms.ahead(side) * BEYOND;
             points.push(p);
             here = rooms.floor.locate_or_nearest(None, p)?;
-            let steps = rooms.steps_out(rooms.room(here)).iter().copied();
-            let steps = steps.filter(|&step| !is_shut(rooms, step, &open));
-            let lengths = steps.filter_map(|step| {
-                let length = rooms.length_to(p, here, step)? + onward[step as usize];
-                length.is_finite().then_some((length, step))
+            let sides = rooms.sides_in(rooms.room(here)).iter().copied();
+            let sides = sides.filter(|&side| !is_shut(rooms, side, &open));
+            let lengths = sides.filter_map(|side| {
+                let length = rooms.length_to(p, here, side)? + onward[side.index()];
+                length.is_finite().then_some((length, side))
             });
             let next = lengths.min_by(|(a, _), (b, _)| a.total_cmp(b));
             let direct = rooms.length_to_goal(p, here, goal);
             match next.filter(|&(length, _)| direct.is_none_or(|direct| length < direct)) {
-                Some((_, next)) => step = next,
+                Some((_, next)) => side = next,
                 None => break,
             }
         }
@@ -103,28 +100,32 @@ fn later(scene: &Scene, now: f64, mut is_it: impl FnMut(u16, ChangeKind) -> bool
     let together = scene.journeys.changes.chunk_by(|a, b| a.at == b.at);
     let mut later = together.filter(|changes| changes[0].at > now);
     let holds = |changes: &&[Change]| {
-        let all = changes
-            .iter()
-            .map(|change| is_it(change.place, change.kind));
+        let all = changes.iter();
+        let all = all.map(|change| is_it(change.place, change.kind));
         all.last().unwrap_or(false)
     };
     later.find(holds).map(|changes| changes[0].at)
 }
 
-/// Whether a step leads through a door that is not open.
-fn is_shut(rooms: &Rooms, step: Step, open: &[bool]) -> bool {
-    let door = rooms.opening(step).door();
+/// Whether the opening of a side is a door that is not open.
+fn is_shut(rooms: &Rooms, side: Side, open: &[bool]) -> bool {
+    let door = rooms.opening(side).door();
     door.is_some_and(|door| open.get(usize::from(door)) == Some(&false))
 }
 
-/// Whether all ways to a goal that begin with one of some steps lead through a door that is not open.
-fn blocks(rooms: &Rooms, (steps, goal): (&[Step], usize), open: &[bool]) -> bool {
-    let is_shut = |step: Step| is_shut(rooms, step, open);
-    let onward = rooms.onward(goal, |step, length| match step.is_some_and(is_shut) {
+/// For each side, the length of the shortest way from its opening to a goal through open doors, meters; infinite
+/// without one.
+fn lengths(rooms: &Rooms, goal: usize, open: &[bool]) -> Vec<f64> {
+    let is_shut = |side: Side| is_shut(rooms, side, open);
+    rooms.onward(goal, |side, length| match side.is_some_and(is_shut) {
         true => f64::INFINITY,
         false => length,
-    });
-    steps
-        .iter()
-        .all(|&step| is_shut(step) || !onward[step as usize].is_finite())
+    })
+}
+
+/// Whether all ways to a goal that leave by one of some sides lead through a door that is not open.
+fn blocks(rooms: &Rooms, (sides, goal): (&[Side], usize), open: &[bool]) -> bool {
+    let onward = lengths(rooms, goal, open);
+    let is_closed = |&side: &Side| is_shut(rooms, side, open) || !onward[side.index()].is_finite();
+    sides.iter().all(is_closed)
 }

@@ -113,10 +113,8 @@ impl Simulation {
         let indexed = new.iter().map(|&(id, goal)| {
             let place = places.get(id as usize).copied().flatten();
             let i = place.ok_or_else(|| GoalError::Absent(id, self.absent(id)))?;
-            if scene.groups[usize::from(agents.group[i])]
-                .direction
-                .is_some()
-            {
+            let group = &scene.groups[usize::from(agents.group[i])];
+            if group.direction.is_some() {
                 return Err(GoalError::Directed(id));
             }
             let is_checked = last.replace(goal) == Some(goal);
@@ -174,8 +172,7 @@ impl Simulation {
 impl Crowd {
     /// Agent `i` abandons its journey: its place in a queue or waiting area becomes free.
     fn leave_journey(&mut self, scene: &Scene, i: usize) {
-        let group = usize::from(self.agents.group[i]);
-        if scene.groups[group].journey.is_none() {
+        if self.journey(scene, i).is_none() {
             return;
         }
         self.agents.trip.resize(self.agents.len(), None);
@@ -200,8 +197,7 @@ impl Crowd {
             Status::Finished | Status::Outside { .. } => {}
         }
         if trip.status != Status::Finished {
-            let bound = &mut self.progress.places[usize::from(trip.place)].bound;
-            *bound = bound.saturating_sub(1);
+            self.progress.places[usize::from(trip.place)].count(None, false);
         }
         if let Some(trip) = &mut self.agents.trip[i] {
             trip.status = Status::Finished;

@@ -163,7 +163,7 @@ impl Simulation {
     /// The first quantity that is not finite, and its agent.
     fn find_fault(&self) -> Option<Fault> {
         let (crowd, fields) = (&self.crowd, &self.derived.fields);
-        let agents = &crowd.agents;
+        let (agents, of_legs) = (&crowd.agents, &fields.legs_acceleration);
         let fault = |i: usize, quantity| Fault::NotFinite {
             frame: crowd.clock.frame(),
             time: crowd.clock.time(),
@@ -177,12 +177,7 @@ impl Simulation {
         None.or_else(|| Some((not_finite(&agents.position)?, "position")))
             .or_else(|| Some((not_finite(&agents.velocity)?, "velocity")))
             .or_else(|| Some((not_finite(&agents.legs)?, "position of legs")))
-            .or_else(|| {
-                Some((
-                    not_finite(&fields.legs_acceleration)?,
-                    "acceleration of legs",
-                ))
-            })
+            .or_else(|| Some((not_finite(of_legs)?, "acceleration of legs")))
             .or_else(|| Some((density()?, "density")))
             .or_else(|| Some((not_finite(&fields.acceleration)?, "acceleration")))
             .map(|(i, quantity)| fault(i, quantity))

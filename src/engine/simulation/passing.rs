@@ -248,9 +248,9 @@ impl Crowd {
     /// Agent `i` passes a place of its stage, which may differ from the one that it chose.
     fn take_place(&mut self, i: usize, place: usize) {
         if let Some(trip) = &mut self.agents.trip[i] {
-            let bound = &mut self.progress.places[usize::from(trip.place)].bound;
-            *bound = bound.saturating_sub(1);
-            self.progress.places[place].bound += 1;
+            let places = &mut self.progress.places;
+            places[usize::from(trip.place)].count(None, false);
+            places[place].count(None, true);
             trip.place = place as u16;
         }
     }

@@ -1,23 +1,23 @@
 //! Ways by time: in coarse frames agents that enter a room compare its openings. Those that have a choice compare them
 //! again now and then.
 //!
-//! An agent expects to pass an opening when it has walked there, or when all agents that are bound for it and nearer
-//! have walked there and passed at its flow, whichever is later. Beyond it, the least time to the goal is that of
-//! Dijkstra's algorithm over openings, which runs once per second for each goal. Agents follow the path map of their
-//! goal as long as its way leads through the opening that they have chosen; with a crowd before the opening they walk
-//! straight to it.
+//! `expected.rs` has the rule. Beyond an opening, the least time to the goal is that of Dijkstra's algorithm over
+//! openings, which runs once per second for each goal. Agents follow the path map of their goal as long as its way
+//! leads through the opening that they have chosen; with a crowd before the opening they walk straight to it.
 
 use rand::Rng;
 use rayon::prelude::*;
 
-use super::bound::{self, Stream};
-use super::times::{Outlook, SINGLE_FILE};
+use super::bound::is_due;
+use super::expected::{is_clearly_quicker, least_or_kept};
+use super::stream::Stream;
+use super::times::{SINGLE_FILE, WayProspect, quickest};
 use super::{Crowd, Simulation, Stage};
 use crate::journeys::Status;
 use crate::neighbors::{BLOCK, TASK};
 use crate::random::{self, Purpose};
 use crate::scene::Scene;
-use crate::ways::{Known, Leaving, Plan, Rooms, Step, Ways};
+use crate::ways::{Located, Plan, Rooms, Side, Ways, WaysOut};
 
 /// Agents are due again after a random time in this range, seconds.
 const AGAIN: [f64; 2] = [2.0, 5.0];
@@ -25,9 +25,6 @@ const AGAIN: [f64; 2] = [2.0, 5.0];
 const FIRST_AGAIN: [f64; 2] = [0.5, 2.0];
 /// Agents decide in the order of their ids times this odd number, modulo 2³².
 const ORDER: u32 = 0x9E37_79B9;
-/// An agent changes to another opening if that saves at least this time, seconds, and this part of the time.
-const LEAST_GAIN: f64 = 1.0;
-const LEAST_SHARE: f64 = 0.1;
 /// Agents that choose for the first time in the same frame do so in this many batches of at least this size. Those of
 /// each see the waits that follow from the choices before; when all have chosen, they choose again.
 const BATCHES: usize = 8;
@@ -36,98 +33,78 @@ const LEAST_BATCH: usize = 8;
 /// width: they walk straight to it, not to the corner that the shortest way bends around.
 const CROWD_PER_METER: f64 = 3.0;
 
-/// The ways that an agent compares.
+/// The decision of an agent between the ways out of its room.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Comparison {
+pub struct WayDecision {
     /// Its plan.
     pub plan: Plan,
-    /// The step by which the shortest way leaves the room; `None`: the goal is there.
-    pub shortest: Option<Step>,
+    /// The side of the opening by which the shortest way leaves the room; `None`: the goal is there.
+    pub shortest: Option<Side>,
     /// The ways.
-    pub outlooks: Vec<Outlook>,
-}
-
-/// Whether a way that takes `new` seconds is so much quicker than one that takes `old` that an agent changes to it.
-pub(super) fn is_clearly_quicker(new: f64, old: f64) -> bool {
-    new < old - LEAST_GAIN.max(LEAST_SHARE * old)
+    pub prospects: Vec<WayProspect>,
 }
 
 /// An agent that compares its ways.
 struct Due {
     agent: usize,
-    /// The triangle where it was.
+    /// Whether it has no plan yet.
+    is_new: bool,
+    /// The room where it was located before, if it is in another one now.
     from: Option<u32>,
-    /// How far it can move without leaving its room, meters.
-    free_distance: f64,
-    /// The ways.
-    leaving: Leaving,
+    /// Where it is located now.
+    located: Located,
+    ways: WaysOut,
 }
 
 impl Simulation {
     /// In coarse frames: agents that choose their ways by time compare them.
     pub(super) fn follow_plans(&mut self) {
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
-        let Some(ways) = &scene.ways else {
-            return;
-        };
-        if ways.rooms().is_none() || !crowd.decides() {
-            return;
+        if let Some(ways) = &scene.ways
+            && let Some(rooms) = ways.rooms()
+            && crowd.decides()
+        {
+            self.stages
+                .time(Stage::Ways, || crowd.compare_ways(scene, ways, rooms));
         }
-        self.stages.time(Stage::Ways, || {
-            if scene.journeys.journeys.is_empty() && !scene.journeys.has_doors() {
-                bound::count(crowd, scene);
-            }
-            crowd.compare_ways(scene, ways);
-        });
     }
 
-    /// The plan of agent `i`, and the ways that it compares; `None` if it does not choose between ways.
-    pub fn comparison(&self, i: usize) -> Option<Comparison> {
+    /// The decision of agent `i` with what it expects now; `None` if it does not choose between ways.
+    pub fn way_decision(&self, i: usize) -> Option<WayDecision> {
         let (scene, crowd) = (&self.fixed.scene, &self.crowd);
         let plan = crowd.agents.plan.get(i).copied().flatten()?;
         let ways = scene.ways.as_ref()?;
         let p = crowd.agents.position[i];
-        let here = ways
-            .rooms()?
-            .floor
-            .locate_or_nearest(Some(plan.triangle), p)?;
-        let leaving = ways.leaving((p, here), plan.goal, Known::default())?;
-        Some(Comparison {
+        let here = plan.located.triangle_at(ways.rooms()?, p)?;
+        let ways_out = ways.ways_out((p, here), plan.goal, None, None)?;
+        Some(WayDecision {
             plan,
-            shortest: leaving.shortest.and_then(|shortest| shortest.step),
-            outlooks: crowd.outlooks_of(scene, i, &leaving),
+            shortest: ways_out.shortest.and_then(|shortest| shortest.side),
+            prospects: crowd.prospects_of(scene, i, &ways_out),
         })
     }
 }
 
 impl Crowd {
-    fn compare_ways(&mut self, scene: &Scene, ways: &Ways) {
-        let Some(rooms) = ways.rooms() else {
-            return;
-        };
+    fn compare_ways(&mut self, scene: &Scene, ways: &Ways, rooms: &Rooms) {
         let progress = &mut self.progress;
-        progress
-            .steps
-            .resize_with(rooms.steps() as usize, Stream::default);
+        let sides = rooms.sides().len();
+        progress.sides.resize_with(sides, Stream::default);
         progress.onward.resize(rooms.goals(), Vec::new());
         let due = self.due(scene, ways, rooms);
-        if bound::is_due(&self.clock) {
-            self.look_ahead(scene, rooms);
+        if is_due(&self.clock) {
+            self.look_ahead(scene);
         }
-        let (new, others): (Vec<Due>, Vec<Due>) =
-            due.into_iter().partition(|due| due.from.is_none());
+        let (new, others): (Vec<Due>, Vec<Due>) = due.into_iter().partition(|due| due.is_new);
         for due in &others {
             self.plan(scene, due, false);
         }
-        let rounds = match scene.by_time() && new.len() > LEAST_BATCH {
-            true => 0..2,
-            false => 0..1,
-        };
+        let rounds = 1 + usize::from(scene.by_time() && new.len() > LEAST_BATCH);
         let size = new.len().div_ceil(BATCHES).max(LEAST_BATCH);
-        for round in rounds.clone() {
+        for round in 0..rounds {
             for (k, batch) in new.chunks(size).enumerate() {
-                if k + round > 0 && rounds.len() > 1 {
-                    self.look_ahead(scene, rooms);
+                if k + round > 0 && rounds > 1 {
+                    self.look_ahead(scene);
                 }
                 for due in batch {
                     self.plan(scene, due, round > 0);
@@ -137,15 +114,15 @@ impl Crowd {
     }
 
     /// Finds the times from each opening on, for the goals of agents.
-    fn look_ahead(&mut self, scene: &Scene, rooms: &Rooms) {
-        let known = (0..rooms.goals()).into_par_iter().map(|goal| {
-            let is_used = !self.progress.onward[goal].is_empty();
-            self.times(scene)
-                .filter(|_| is_used)
-                .map(|times| times.onward(goal))
-        });
-        let known: Vec<Option<Vec<f64>>> = known.collect();
-        self.progress.onward = known.into_iter().map(Option::unwrap_or_default).collect();
+    fn look_ahead(&mut self, scene: &Scene) {
+        if let Some(times) = self.times(scene) {
+            let known = self.progress.onward.par_iter().enumerate();
+            let onward = known.map(|(goal, known)| match known.is_empty() {
+                true => Vec::new(),
+                false => times.onward(goal),
+            });
+            self.progress.onward = onward.collect::<Vec<_>>();
+        }
     }
 
     /// The agents that enter a room, have a new goal or compare their ways again, in a fixed order. Of the others,
@@ -161,29 +138,30 @@ impl Crowd {
             let walks = trip
                 .is_none_or(|trip| trip.status == Status::Walking || trip.place_ahead().is_none());
             let walks = walks && agents.is_present(agent);
-            let goal = walks
-                .then(|| ways.map_to(agents.destination(agent)))
-                .flatten();
+            let to = walks.then(|| agents.destination(agent));
+            let goal = to.and_then(|to| ways.map_to(to));
             let p = agents.position[agent];
             let goes_on = |plan: &Plan| Some(plan.goal) == goal && plan.decides_at > frame;
-            if plan.is_some_and(|plan| goes_on(&plan) && plan.stays_at(p)) {
+            if plan.is_some_and(|plan| goes_on(&plan) && plan.located.stays_at(p)) {
                 return None;
             }
             let keeps_plan = |plan: &Plan| {
                 goes_on(plan) || Some(plan.goal) == goal && has_no_choice(plan, rooms)
             };
-            let from = plan.map(|plan| plan.triangle);
-            let locate = |goal| Some((goal, rooms.floor.locate_or_nearest(from, p)?));
-            let Some((goal, here)) = goal.and_then(locate) else {
+            let before = plan.map(|plan| plan.located);
+            let locate = |goal| Some((goal, Located::new(rooms, before, p)?));
+            let Some((goal, located)) = goal.and_then(locate) else {
                 *plan = None;
                 return None;
             };
-            let free_distance = rooms.free_distance(here, p);
-            if let Some(plan) = plan
-                && rooms.room(plan.triangle) == rooms.room(here)
-                && keeps_plan(plan)
-            {
-                (plan.triangle, plan.located, plan.free_distance) = (here, p, free_distance);
+            let here = located.triangle();
+            let before = before.map(|before| rooms.room(before.triangle()));
+            let from = before.filter(|&from| from != rooms.room(here));
+            let kept = plan
+                .as_mut()
+                .filter(|plan| from.is_none() && keeps_plan(plan));
+            if let Some(plan) = kept {
+                plan.located = located;
                 if plan.decides_at <= frame {
                     plan.decides_at = crowd.due_again(scene, agent, Some(*plan));
                     plan.turns += 1;
@@ -192,9 +170,10 @@ impl Crowd {
             }
             Some(Due {
                 agent,
+                is_new: before.is_none(),
                 from,
-                free_distance,
-                leaving: ways.leaving((p, here), goal, Known::default())?,
+                located,
+                ways: ways.ways_out((p, here), goal, None, None)?,
             })
         });
         let mut due: Vec<Due> = due.collect();
@@ -215,52 +194,35 @@ impl Crowd {
 
     /// An agent that is due compares its ways; `afresh`: whatever it has planned.
     fn plan(&mut self, scene: &Scene, due: &Due, afresh: bool) {
-        let (i, leaving) = (due.agent, &due.leaving);
-        let (here, goal) = (leaving.triangle, leaving.goal);
         let (Some(ways), Some(rooms)) = (&scene.ways, scene.rooms()) else {
             return;
         };
-        if self.progress.onward[usize::from(goal)].is_empty()
-            && let Some(onward) = self
-                .times(scene)
-                .map(|times| times.onward(usize::from(goal)))
-        {
-            self.progress.onward[usize::from(goal)] = onward;
+        let (i, goal) = (due.agent, due.ways.goal);
+        self.look_ahead_to(scene, usize::from(goal));
+        let old = self.agents.plan[i];
+        let (p, here) = (self.agents.position[i], due.located.triangle());
+        let passed = (due.from).and_then(|from| rooms.side_between(from, rooms.room(here), p));
+        if let Some(side) = passed {
+            self.progress.sides[side.index()].pass();
         }
-        let (p, old) = (self.agents.position[i], self.agents.plan[i]);
-        let from = due
-            .from
-            .map(|t| rooms.room(t))
-            .filter(|&from| from != rooms.room(here));
-        let taken = from.and_then(|from| rooms.step_between(from, rooms.room(here), p));
-        if let Some(step) = taken {
-            self.progress.steps[step as usize].pass();
-        }
-        let outlooks = self.outlooks_of(scene, i, leaving);
-        let kept = kept(
-            old.filter(|old| old.goal == goal && !afresh),
-            taken,
-            from.is_some(),
-            &outlooks,
-        );
-        let crossed = taken.or(old.and_then(|old| old.crossed));
-        let shortest = leaving.shortest.map(|shortest| shortest.step);
+        let prospects = self.prospects_of(scene, i, &due.ways);
+        let is_lost = passed.is_none() && due.from.is_some();
+        let planned = old.filter(|old| old.goal == goal && !afresh && !is_lost);
+        let kept = kept(planned, passed, &prospects);
+        let crossed = passed.or(old.and_then(|old| old.crossed));
+        let shortest = due.ways.shortest.map(|shortest| shortest.side);
         let leads_on =
-            |step: &Option<Step>| step.is_none() || *step != crossed.map(|step| step ^ 1);
-        let usual = shortest.filter(leads_on).and_then(|step| {
-            let mut outlooks = outlooks.iter();
-            outlooks.find(|one| one.step == step).copied()
-        });
-        let chosen = chosen(kept, usual, &outlooks);
-        let changes = kept.is_some() && chosen.map(|one| one.step) != kept.map(|one| one.step);
-        let toward = chosen.and_then(|chosen| chosen.step);
-        let is_elsewhere = shortest.is_none_or(|step| step != toward);
+            |side: &Option<Side>| side.is_none() || *side != crossed.map(|side| side.other());
+        let usual = shortest.filter(leads_on);
+        let usual = usual.and_then(|side| leaving_by(side, &prospects));
+        let chosen = chosen(kept, usual, &prospects);
+        let changes = kept.is_some() && chosen.map(|way| way.side) != kept.map(|way| way.side);
+        let toward = chosen.and_then(|chosen| chosen.side);
+        let is_elsewhere = shortest.is_none_or(|side| side != toward);
         let detours =
             chosen.is_some_and(|way| is_elsewhere || scene.by_time() && is_crowded(&way, rooms));
         let plan = Plan {
-            triangle: here,
-            located: p,
-            free_distance: due.free_distance,
+            located: due.located,
             goal,
             toward,
             crossed,
@@ -273,31 +235,54 @@ impl Crowd {
         if old.and_then(|old| old.detour(ways, to)) != plan.detour(ways, to) {
             self.agents.forget_route(i);
         }
-        // Agents that choose after this one see its choice.
         let left = old.and_then(|old| old.toward);
-        let length = |step| {
-            let known = leaving.through(step).map(|[length, _]| length);
-            let length = known.or_else(|| rooms.length_to(p, here, step));
+        self.count_change(rooms, due, [left, toward], passed.is_some());
+        self.agents.plan[i] = Some(plan);
+    }
+
+    /// Counts an agent that was bound for one side and is now bound for another, after it `has_passed` the first, so
+    /// that agents that choose after it see its choice.
+    fn count_change(
+        &mut self,
+        rooms: &Rooms,
+        due: &Due,
+        [left, toward]: [Option<Side>; 2],
+        has_passed: bool,
+    ) {
+        if left == toward && !has_passed {
+            return;
+        }
+        let (p, here) = (self.agents.position[due.agent], due.located.triangle());
+        let length = |side| {
+            let known = due.ways.through(side).map(|[length, _]| length);
+            let length = known.or_else(|| rooms.length_to(p, here, side));
             length.unwrap_or(0.0)
         };
-        if left != toward || taken.is_some() {
-            if let Some(step) = left {
-                let length = if taken.is_some() { 0.0 } else { length(step) };
-                self.progress.steps[step as usize].count(length, false);
-            }
-            if let Some(step) = toward {
-                self.progress.steps[step as usize].count(length(step), true);
-            }
+        if let Some(side) = left {
+            let length = if has_passed { 0.0 } else { length(side) };
+            self.progress.sides[side.index()].count(length, false);
         }
-        self.agents.plan[i] = Some(plan);
+        if let Some(side) = toward {
+            self.progress.sides[side.index()].count(length(side), true);
+        }
+    }
+
+    /// Finds the times from each opening on to a goal, if they are not known.
+    fn look_ahead_to(&mut self, scene: &Scene, goal: usize) {
+        if self.progress.onward[goal].is_empty()
+            && let Some(onward) = self.times(scene).map(|times| times.onward(goal))
+        {
+            self.progress.onward[goal] = onward;
+        }
     }
 }
 
 /// Whether an agent with this plan leaves its room as planned, whatever it expects: there is no other way, and people
 /// pass the opening one behind the other.
 fn has_no_choice(plan: &Plan, rooms: &Rooms) -> bool {
-    let only = rooms.only_step(rooms.room(plan.triangle), usize::from(plan.goal));
-    let is_narrow = |step: Step| rooms.opening(step).width() < SINGLE_FILE;
+    let room = rooms.room(plan.located.triangle());
+    let only = rooms.only_side(room, usize::from(plan.goal));
+    let is_narrow = |side: Side| rooms.opening(side).width() < SINGLE_FILE;
     !plan.detours && plan.toward == only && only.is_some_and(is_narrow)
 }
 
@@ -307,45 +292,46 @@ fn turns(old: Option<Plan>) -> u32 {
 }
 
 /// Whether a crowd stands before the opening of a way, and several people pass it beside each other.
-fn is_crowded(way: &Outlook, rooms: &Rooms) -> bool {
-    let width = way.step.map(|step| rooms.opening(step).width());
+fn is_crowded(way: &WayProspect, rooms: &Rooms) -> bool {
+    let width = way.side.map(|side| rooms.opening(side).width());
     let width = width.filter(|&width| width >= SINGLE_FILE);
-    width.is_some_and(|width| f64::from(way.ahead) >= CROWD_PER_METER * width)
+    width.is_some_and(|width| f64::from(way.expected.ahead) >= CROWD_PER_METER * width)
 }
 
 /// The way that an agent takes: the quickest, if that is clearly quicker than the one that it has kept; else the
 /// shortest one that does not lead back, `usual`, if it is not slower than the one kept.
-fn chosen(kept: Option<Outlook>, usual: Option<Outlook>, outlooks: &[Outlook]) -> Option<Outlook> {
-    let quickest = outlooks.iter().min_by(|a, b| a.total.total_cmp(&b.total));
-    let (Some(best), Some(kept)) = (quickest, kept) else {
-        return quickest.copied();
-    };
-    if is_clearly_quicker(best.total, kept.total) {
-        return Some(*best);
-    }
-    let usual = usual.filter(|usual| usual.total <= kept.total);
-    Some(usual.unwrap_or(kept))
+fn chosen(
+    kept: Option<WayProspect>,
+    usual: Option<WayProspect>,
+    prospects: &[WayProspect],
+) -> Option<WayProspect> {
+    let times = prospects.iter().map(|way| (*way, way.expected.total_secs));
+    let (chosen, _) = least_or_kept(times, kept, is_clearly_quicker)?;
+    let is_kept = kept == Some(chosen);
+    let is_slower = |way: &WayProspect| way.expected.total_secs > chosen.expected.total_secs;
+    Some(
+        usual
+            .filter(|usual| is_kept && !is_slower(usual))
+            .unwrap_or(chosen),
+    )
 }
 
-/// The way that an agent keeps unless another one is clearly quicker: the one that it has planned, and after a step the
-/// best one that does not lead back. An agent that was pushed back through an opening keeps the way through it.
-fn kept(
-    old: Option<Plan>,
-    taken: Option<Step>,
-    moved: bool,
-    outlooks: &[Outlook],
-) -> Option<Outlook> {
+/// The way that leaves the room by a side.
+fn leaving_by(side: Option<Side>, prospects: &[WayProspect]) -> Option<WayProspect> {
+    prospects.iter().find(|way| way.side == side).copied()
+}
+
+/// The way that an agent keeps unless another one is clearly quicker: the one that it has planned, and after it has
+/// passed an opening the best one that does not lead back. An agent that was pushed back through an opening keeps the
+/// way through it.
+fn kept(old: Option<Plan>, passed: Option<Side>, prospects: &[WayProspect]) -> Option<WayProspect> {
     let old = old?;
-    let by = |step: Option<Step>| outlooks.iter().find(|one| one.step == step).copied();
-    match taken {
-        None if moved => None,
-        None => by(old.toward),
-        Some(taken) if old.toward != Some(taken) && old.crossed == Some(taken ^ 1) => {
-            by(Some(taken ^ 1))
-        }
-        Some(taken) => {
-            let onward = outlooks.iter().filter(|one| one.step != Some(taken ^ 1));
-            onward.min_by(|a, b| a.total.total_cmp(&b.total)).copied()
-        }
+    let Some(passed) = passed else {
+        return leaving_by(old.toward, prospects);
+    };
+    let back = Some(passed.other());
+    match old.toward != Some(passed) && old.crossed == back {
+        true => leaving_by(back, prospects),
+        false => quickest(prospects.iter().filter(|way| way.side != back)),
     }
 }

@@ -97,11 +97,8 @@ impl Schedule {
     }
 
     pub(super) fn note(&mut self, frame: u64, name: &str, kind: EventKind) {
-        self.events.push(Event {
-            frame,
-            name: name.to_owned(),
-            kind,
-        });
+        let name = name.to_owned();
+        self.events.push(Event { frame, name, kind });
     }
 }
 

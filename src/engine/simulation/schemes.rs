@@ -17,12 +17,8 @@ impl Simulation {
             let before = &mut agents.acceleration_before;
             correct(&mut agents.velocity, before, &fields.acceleration, dt);
             let before = &mut agents.legs_acceleration_before;
-            correct(
-                &mut agents.legs_velocity,
-                before,
-                &fields.legs_acceleration,
-                dt,
-            );
+            let now = &fields.legs_acceleration;
+            correct(&mut agents.legs_velocity, before, now, dt);
         });
         self.move_both(|_, v, a| Motion {
             way: v + a * (0.5 * dt),

@@ -1,10 +1,12 @@
 //! The times that agents expect for the ways through openings.
 
-use super::bound;
+use super::bound::FLOW_PER_METER_OF_OPENINGS;
+use super::expected::{Expected, Line};
+use super::stream::BEFORE;
 use super::{Crowd, Progress, Simulation};
 use crate::math::Vector;
 use crate::scene::{Knowledge, Scene};
-use crate::ways::{Destination, Known, Leaving, Rooms, Step};
+use crate::ways::{Destination, Rooms, Side, WaysOut};
 
 /// Waiting before a closed door is expected to take this long, seconds.
 const CLOSED: f64 = 3600.0;
@@ -26,125 +28,112 @@ pub(super) struct Times<'a> {
     pub per_meter: f64,
 }
 
-/// A way out of a room, or to a goal in it.
+/// A way out of a room, or to a goal in it, as an agent sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outlook {
-    /// The step by which it leaves the room; `None`: the goal is there.
-    pub step: Option<Step>,
+pub struct WayProspect {
+    /// The side of the opening by which it leaves the room; `None`: the goal is there.
+    pub side: Option<Side>,
     /// The length of the way to the opening, or to the goal, meters.
     pub length: f64,
-    /// Agents that pass the opening before: those that are nearer to it, and those that come from the other side.
-    pub ahead: u32,
-    /// Its flow, P/s; infinite at the goal.
-    pub flow: f64,
-    /// The time until the agent has passed the opening, seconds.
-    pub until_through: f64,
-    /// The time to the goal, seconds.
-    pub total: f64,
+    /// The times that the agent expects for it.
+    pub expected: Expected,
 }
 
-impl Times<'_> {
-    /// The flow of a step, P/s.
-    pub fn flow(&self, step: Step) -> f64 {
-        let expected = self.per_meter * self.rooms.opening(step).width();
-        let stream = self.progress.steps.get(step as usize);
+impl<'a> Times<'a> {
+    /// The flow through the opening of a side, P/s.
+    pub fn flow(&self, side: Side) -> f64 {
+        let expected = self.per_meter * self.rooms.opening(side).width();
+        let stream = self.progress.sides.get(side.index());
         stream.map_or(expected, |stream| stream.flow(expected))
     }
 
-    /// The time to walk `length` meters and pass the opening of a step (`None`: to arrive), seconds. `sees`: knowing
-    /// who waits there.
-    fn leg(&self, step: Option<Step>, length: f64, (speed, sees): (f64, bool)) -> f64 {
-        let walking = length / speed;
-        let Some(step) = step else {
-            return walking;
-        };
-        let door = self.rooms.opening(step).door();
-        let state = door.and_then(|door| self.progress.places.get(usize::from(door)));
-        let closed = if state.is_some_and(|state| !state.open) {
-            CLOSED
-        } else {
-            0.0
-        };
-        let waiting = match sees && self.scene.by_time() {
-            true => self.waiting(step, length, speed),
-            false => 0.0,
-        };
-        walking.max(waiting) + closed
-    }
-
-    /// The time until those have passed the opening of a step that pass it before an agent that is `length` meters away
-    /// and walks at some speed, seconds.
-    fn waiting(&self, step: Step, length: f64, speed: f64) -> f64 {
-        let (speed, flow) = (speed.max(self.scene.preferred_speed), self.flow(step));
-        let own = self.progress.steps.get(step as usize);
-        let clear = own.map_or(0.0, |own| own.clear_after(length, speed, flow));
-        clear + f64::from(self.oncoming(step, length)) / flow
-    }
-
-    /// The number of agents that pass the opening of a step before one that is `length` meters away: those bound for it
-    /// that are nearer, and those that come from the other side.
-    fn ahead(&self, step: Step, length: f64) -> u32 {
-        let own = self.progress.steps.get(step as usize);
-        own.map_or(0, |own| own.nearer_than(length)) + self.oncoming(step, length)
-    }
-
-    /// Of the agents that come from the other side of an opening, those that pass it before one that is `length` meters
-    /// away. Where two cannot pass each other, all of these.
-    fn oncoming(&self, step: Step, length: f64) -> u32 {
-        let other = self.progress.steps.get((step ^ 1) as usize);
-        other.map_or(0, |other| {
-            match self.rooms.opening(step).width() < SINGLE_FILE {
+    /// The opening of a side, as an agent sees it that is `length` meters away.
+    fn line(&self, side: Side, length: f64) -> Line<'a> {
+        let of = |side: Side| self.progress.sides.get(side.index());
+        let oncoming = of(side.other()).map_or(0, |other| {
+            // Where two agents cannot pass each other, all from the other side go first.
+            match self.rooms.opening(side).width() < SINGLE_FILE {
                 true => other.bound(),
-                false => other.nearer_than(length.max(bound::BEFORE)),
+                false => other.nearer_than(length.max(BEFORE)),
+            }
+        });
+        Line {
+            length,
+            stream: of(side),
+            oncoming,
+            flow: self.flow(side),
+        }
+    }
+
+    /// The times to walk to an opening and to wait there, seconds; `None` for the line: without waits for others.
+    fn passing(&self, side: Side, line: Option<&Line>, length: f64, speed: f64) -> [f64; 2] {
+        let walking = length / speed;
+        let of_others = speed.max(self.scene.preferred_speed);
+        let waiting = line.map_or(0.0, |line| line.waiting(of_others));
+        let door = self.rooms.opening(side).door();
+        let state = door.and_then(|door| self.progress.places.get(usize::from(door)));
+        match state.is_some_and(|state| !state.open) {
+            true => [walking, walking.max(waiting) + CLOSED],
+            false => [walking, waiting],
+        }
+    }
+
+    /// The least times from each side to a goal, seconds, for agents that walk at the scene's speed.
+    pub fn onward(&self, goal: usize) -> Vec<f64> {
+        let sees = self.scene.by_time() && self.scene.routing.knowledge == Knowledge::Floor;
+        let speed = self.scene.preferred_speed.max(SLOWEST);
+        self.rooms.onward(goal, |side, length| match side {
+            None => length / speed,
+            Some(side) => {
+                let line = sees.then(|| self.line(side, length));
+                let [walking, waiting] = self.passing(side, line.as_ref(), length, speed);
+                walking.max(waiting)
             }
         })
     }
 
-    /// The least times from each step to a goal, seconds, for agents that walk at the scene's speed.
-    pub fn onward(&self, goal: usize) -> Vec<f64> {
-        let sees = self.scene.routing.knowledge == Knowledge::Floor;
-        let speed = self.scene.preferred_speed.max(SLOWEST);
-        let leg = |step, length| self.leg(step, length, (speed, sees));
-        self.rooms.onward(goal, leg)
-    }
-
-    /// The times of the ways that leave a room, for a speed, m/s; `onward` are the times beyond to their goal, for the
-    /// scene's speed.
+    /// What an agent with this speed, m/s, expects of its ways out of a room; `onward` are the times beyond to their
+    /// goal, for the scene's speed.
     ///
     /// Ways lead over the middles of openings, but the length of the shortest one is exact.
-    pub fn outlooks(&self, leaving: &Leaving, onward: &[f64], speed: f64) -> Vec<Outlook> {
+    pub fn prospects(&self, ways: &WaysOut, onward: &[f64], speed: f64) -> Vec<WayProspect> {
         let speed = speed.max(SLOWEST);
         let slower = 1.0 / speed - 1.0 / self.scene.preferred_speed.max(SLOWEST);
-        let exact = leaving.shortest.filter(|_| !self.rooms.has_one_way());
-        let direct = leaving.direct.map(|length| Outlook {
-            step: None,
+        let exact = ways.shortest.filter(|_| !self.rooms.has_one_way());
+        let direct = ways.direct.map(|length| WayProspect {
+            side: None,
             length,
-            ahead: 0,
-            flow: f64::INFINITY,
-            until_through: length / speed,
-            total: length / speed,
+            expected: GOAL.expected(length / speed, 0.0, &[]),
         });
-        let through = leaving.through.iter();
-        let through = through.filter_map(|&(step, [length, aside])| {
-            let onward = onward.get(step as usize).filter(|time| time.is_finite())?;
-            let until_through = self.leg(Some(step), length, (speed, true));
-            let from = self.rooms.length_from(step, usize::from(leaving.goal));
+        let through = ways.through.iter();
+        let through = through.filter_map(|&(side, [length, aside])| {
+            let beyond = onward.get(side.index()).filter(|time| time.is_finite())?;
+            let from = self.rooms.length_from(side, usize::from(ways.goal));
             let over = length + aside + from;
             let excess = exact
-                .filter(|exact| exact.step == Some(step))
+                .filter(|exact| exact.side == Some(side))
                 .map_or(0.0, |exact| (over - exact.length).max(0.0));
-            Some(Outlook {
-                step: Some(step),
+            let line = self.line(side, length);
+            let waits = Some(&line).filter(|_| self.scene.by_time());
+            let [walking, waiting] = self.passing(side, waits, length, speed);
+            let beyond = [*beyond, (aside - excess) / speed, from * slower];
+            Some(WayProspect {
+                side: Some(side),
                 length,
-                ahead: self.ahead(step, length),
-                flow: self.flow(step),
-                until_through,
-                total: until_through + onward + (aside - excess) / speed + from * slower,
+                expected: line.expected(walking, waiting, &beyond),
             })
         });
         direct.into_iter().chain(through).collect()
     }
 }
+
+/// A goal: no line to wait at.
+const GOAL: Line = Line {
+    length: 0.0,
+    stream: None,
+    oncoming: 0,
+    flow: f64::INFINITY,
+};
 
 impl Simulation {
     /// The points of the way from `p` that takes the least time now, meters: its corners, the places where it crosses
@@ -160,33 +149,32 @@ impl Simulation {
         };
         let (rooms, onward) = (times.rooms, times.onward(usize::from(goal)));
         let (mut points, mut here, mut back) = (Vec::new(), p, None);
-        for _ in 0..=rooms.steps() {
-            let Some(t) = rooms.floor.locate_or_nearest(None, here) else {
-                break;
-            };
-            let Some(leaving) = ways.leaving((here, t), goal, Known::default()) else {
-                break;
-            };
-            let mut all = times.outlooks(&leaving, &onward, scene.preferred_speed);
-            all.retain(|outlook| outlook.step.is_none() || outlook.step != back);
-            let Some(best) = all.into_iter().min_by(|a, b| a.total.total_cmp(&b.total)) else {
+        for _ in 0..=rooms.sides().len() {
+            let located = rooms.floor.locate_or_nearest(None, here);
+            let best = located.and_then(|t| {
+                let ways_out = ways.ways_out((here, t), goal, None, None)?;
+                let all = times.prospects(&ways_out, &onward, scene.preferred_speed);
+                let leads_on = |way: &&WayProspect| way.side.is_none() || way.side != back;
+                Some((t, quickest(all.iter().filter(leads_on))?))
+            });
+            let Some((t, best)) = best else {
                 break;
             };
             // As agents do: the shortest way as long as it leads through the chosen opening.
             let mut course = ways.course(here, to);
             let crossing = rooms.first_crossing(here, t, course.iter().copied());
-            if crossing.map(|crossing| crossing.step) != best.step {
-                course = rooms.course((here, t), usize::from(goal), best.step);
+            if crossing.map(|crossing| crossing.side) != best.side {
+                course = rooms.course((here, t), usize::from(goal), best.side);
             } else if let Some(crossing) = crossing {
                 course.truncate(crossing.after);
                 course.push(crossing.at);
             }
             points.extend(course);
-            let Some((step, &end)) = best.step.zip(points.last()) else {
+            let Some((side, &end)) = best.side.zip(points.last()) else {
                 break;
             };
-            here = end + rooms.ahead(step) * BEYOND;
-            back = Some(step ^ 1);
+            here = end + rooms.ahead(side) * BEYOND;
+            back = Some(side.other());
         }
         points
     }
@@ -198,12 +186,14 @@ impl Simulation {
         let Some(times) = crowd.times(scene) else {
             return Vec::new();
         };
-        let wait = |step: Step| {
-            let stream = crowd.progress.steps.get(step as usize);
-            stream.map_or(0.0, |stream| f64::from(stream.bound()) / times.flow(step))
+        let wait = |side: &Side| {
+            let stream = crowd.progress.sides.get(side.index());
+            stream.map_or(0.0, |stream| f64::from(stream.bound()) / times.flow(*side))
         };
-        let openings = 0..times.rooms.openings().len() as Step;
-        openings.map(|k| wait(2 * k).max(wait(2 * k + 1))).collect()
+        let sides: Vec<Side> = times.rooms.sides().collect();
+        let openings = sides.chunks(2);
+        let waits = openings.map(|sides| sides.iter().map(wait).fold(0.0, f64::max));
+        waits.collect()
     }
 }
 
@@ -215,42 +205,41 @@ impl Crowd {
             rooms,
             scene,
             progress: &self.progress,
-            per_meter: self.flow_per_meter().max(bound::FLOW_PER_METER_OF_OPENINGS),
+            per_meter: self.flow_per_meter().max(FLOW_PER_METER_OF_OPENINGS),
         })
     }
 
-    /// The times that agent `i` expects for the ways out of its room to a goal.
-    pub(super) fn outlooks_of(&self, scene: &Scene, i: usize, leaving: &Leaving) -> Vec<Outlook> {
-        let onward = self.progress.onward.get(usize::from(leaving.goal));
+    /// What agent `i` expects of its ways out of a room.
+    pub(super) fn prospects_of(&self, scene: &Scene, i: usize, ways: &WaysOut) -> Vec<WayProspect> {
+        let onward = self.progress.onward.get(usize::from(ways.goal));
         let (Some(times), Some(onward)) = (self.times(scene), onward) else {
             return Vec::new();
         };
         let own = self.agents.preferred_speed.get(i).copied();
         let speed = own.unwrap_or(scene.preferred_speed);
-        times.outlooks(leaving, onward, speed)
+        times.prospects(ways, onward, speed)
     }
 
     /// The ways out of the room of agent `i` that lead to a goal, if agents choose by time. The shortest way is
-    /// `length` meters long; `known`: the same for another goal.
-    pub(super) fn leaving_to(
+    /// `length` meters long; `others`: the ways to another goal.
+    pub(super) fn ways_out_to(
         &self,
         scene: &Scene,
         (i, goal, length): (usize, u16, f64),
-        known: Option<&Leaving>,
-    ) -> Option<Leaving> {
+        others: Option<&WaysOut>,
+    ) -> Option<WaysOut> {
         let rooms = scene.rooms().filter(|_| scene.by_time())?;
         let p = self.agents.position[i];
         let locate = || {
             let plan = self.agents.plan.get(i).copied().flatten();
-            let before = plan.map(|plan| plan.triangle);
-            rooms.floor.locate_or_nearest(before, p)
+            match plan {
+                Some(plan) => plan.located.triangle_at(rooms, p),
+                None => rooms.floor.locate_or_nearest(None, p),
+            }
         };
-        let here = known.map(|known| known.triangle).or_else(locate)?;
-        let known = Known {
-            leaving: known,
-            length: Some(length),
-        };
-        scene.ways.as_ref()?.leaving((p, here), goal, known)
+        let here = others.map(|others| others.triangle).or_else(locate)?;
+        let ways = scene.ways.as_ref()?;
+        ways.ways_out((p, here), goal, others, Some(length))
     }
 
     /// The time that agent `i` expects for the way to a goal, seconds, whose length is `length` meters; `None` if it is
@@ -259,14 +248,18 @@ impl Crowd {
         &self,
         scene: &Scene,
         (i, goal, length): (usize, u16, f64),
-        known: &mut Option<Leaving>,
+        known: &mut Option<WaysOut>,
     ) -> Option<f64> {
         if known.as_ref().is_none_or(|known| known.goal != goal) {
-            *known = Some(self.leaving_to(scene, (i, goal, length), known.as_ref())?);
+            *known = Some(self.ways_out_to(scene, (i, goal, length), known.as_ref())?);
         }
-        let all = self.outlooks_of(scene, i, known.as_ref()?);
-        all.into_iter()
-            .map(|outlook| outlook.total)
-            .reduce(f64::min)
+        let all = self.prospects_of(scene, i, known.as_ref()?);
+        quickest(&all).map(|way| way.expected.total_secs)
     }
+}
+
+/// The way that takes the least time.
+pub(super) fn quickest<'a>(ways: impl IntoIterator<Item = &'a WayProspect>) -> Option<WayProspect> {
+    let ways = ways.into_iter().copied();
+    ways.min_by(|a, b| a.expected.total_secs.total_cmp(&b.expected.total_secs))
 }

@@ -3,48 +3,13 @@
 use rand::Rng;
 use rand::distr::Open01;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use super::bound::{self, Stream};
-use super::choice::Chooser;
-use super::place_state::PlaceState;
-use super::sight::Seen;
+use super::choice::{Chooser, Seen};
 use super::{Crowd, EventKind, Simulation, Stage};
-use crate::clock::Clock;
 use crate::journeys::{ChangeKind, Kind, Status, Trip, WaitingArea};
 use crate::neighbors::{BLOCK, TASK};
 use crate::random::{self, Purpose};
 use crate::scene::Scene;
-
-/// The number of agents that have begun each journey, and the state of each place.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Progress {
-    /// The number of agents that have begun each journey.
-    pub begun: Vec<u32>,
-    /// The state of each place.
-    pub places: Vec<PlaceState>,
-    /// The number of agents that have left by an exit, and whose bodies still walk on.
-    pub outside: u32,
-    /// The number of changes of places so far.
-    changes: usize,
-    /// The agents bound for each step through the openings of rooms.
-    pub steps: Vec<Stream>,
-    /// For each path map, the expected times from each step to its goal, seconds; empty if no agent walks there.
-    pub(super) onward: Vec<Vec<f64>>,
-    /// The largest flow per meter of all lines when they were last observed, P/(m s).
-    pub(super) per_meter: f64,
-}
-
-impl Progress {
-    /// Whether this progress fits `scene`.
-    pub(super) fn fits(&self, scene: &Scene) -> bool {
-        let journeys = &scene.journeys;
-        let is_new = self.places.is_empty() && self.begun.is_empty();
-        let counts = (self.places.len(), self.begun.len());
-        self.changes <= journeys.changes.len()
-            && (is_new || counts == (journeys.places.len(), journeys.journeys.len()))
-    }
-}
 
 /// Whether this trip fits `scene`.
 pub(super) fn fits(trip: &Trip, scene: &Scene) -> bool {
@@ -66,7 +31,7 @@ impl Simulation {
             let factors = positions.map(|&p| Some(scene.journeys.speed_factor(p, time)));
             factors.collect_into_vec(&mut agents.zone);
         }
-        if !scene.journeys.journeys.is_empty() || scene.journeys.has_doors() {
+        if scene.journeys.has_trips() {
             self.stages
                 .time(Stage::Journeys, || crowd.follow_journeys(scene));
         }
@@ -75,15 +40,12 @@ impl Simulation {
 
 impl Crowd {
     fn follow_journeys(&mut self, scene: &Scene) {
-        let journeys = &scene.journeys;
-        let progress = &mut self.progress;
-        progress.begun.resize(journeys.journeys.len(), 0);
-        let places = journeys.places.len();
-        progress.places.resize_with(places, PlaceState::default);
         self.change_places(scene);
-        bound::count(self, scene);
         self.agents.trip.resize(self.agents.len(), None);
-        for i in self.where_due(|crowd, i| crowd.has_to_begin(scene, i)) {
+        let has_to_begin = |crowd: &Self, i: usize| {
+            crowd.agents.trip[i].is_none() && crowd.journey(scene, i).is_some()
+        };
+        for i in self.where_due(has_to_begin) {
             self.begin(scene, i);
         }
         self.serve_queues(scene);
@@ -127,14 +89,13 @@ impl Crowd {
         }
     }
 
-    fn has_to_begin(&self, scene: &Scene, i: usize) -> bool {
-        let group = usize::from(self.agents.group[i]);
-        self.agents.trip[i].is_none() && scene.groups[group].journey.is_some()
+    /// The journey of agent `i`, if it has one.
+    pub(super) fn journey(&self, scene: &Scene, i: usize) -> Option<u16> {
+        scene.groups[usize::from(self.agents.group[i])].journey
     }
 
     pub(super) fn begin(&mut self, scene: &Scene, i: usize) {
-        let group = usize::from(self.agents.group[i]);
-        let Some(journey) = scene.groups[group].journey else {
+        let Some(journey) = self.journey(scene, i) else {
             return;
         };
         self.progress.begun[usize::from(journey)] += 1;
@@ -158,34 +119,21 @@ impl Crowd {
             return;
         };
         let chooser = Chooser {
-            scene,
-            crowd: self,
-            agent: i,
-            is_asked: false,
             seen: seen.filter(|seen| seen.stage == trip.stage),
+            ..Chooser::of(scene, self, i)
         };
         let before = (trip.status == Status::Walking).then_some(trip.place);
         let (place, chooses_at) = chooser.choose(&trip, before);
         trip.chooses_at = chooses_at;
         trip.choices += 1;
         if before != Some(place) {
-            let changes = before.map(|before| (before, false)).into_iter();
-            let changes = changes.chain([(place, true)]);
             // Agents that choose after this one see its choice.
-            let lengths = scene.journeys.has_quickest().then(|| {
-                let lengths = changes.clone().map(|(place, _)| chooser.length(place));
-                lengths.collect::<Vec<f64>>()
-            });
-            for (k, (place, comes)) in changes.enumerate() {
-                let state = &mut self.progress.places[usize::from(place)];
-                state.bound = if comes {
-                    state.bound + 1
-                } else {
-                    state.bound.saturating_sub(1)
-                };
-                if let Some(lengths) = &lengths {
-                    state.stream.count(lengths[k], comes);
-                }
+            let has_quickest = scene.journeys.has_quickest();
+            let length = |place| has_quickest.then(|| chooser.length(place));
+            let left = before.map(|before| (before, length(before), false));
+            let bound = (place, length(place), true);
+            for (place, length, comes) in left.into_iter().chain([bound]) {
+                self.progress.places[usize::from(place)].count(length, comes);
             }
             trip.place = place;
             trip.status = Status::Walking;
@@ -246,7 +194,11 @@ impl Crowd {
             &scene.journeys.places[usize::from(trip.place)].kind,
             trip.status,
         ) {
-            (_, Status::Waiting { spot, since, .. }) => self.end_wait(scene, i, spot, since),
+            (_, Status::Waiting { spot, since, .. }) => {
+                self.progress.places[usize::from(trip.place)].leave_spot(spot);
+                self.count_wait(i, since);
+                self.go_on(scene, i);
+            }
             (Kind::Disk { at, within }, _) if (position - at).norm() <= *within => {
                 self.go_on(scene, i);
             }
@@ -296,19 +248,9 @@ impl Crowd {
         };
     }
 
-    fn end_wait(&mut self, scene: &Scene, i: usize, spot: u32, since: u64) {
-        let Some(trip) = &self.agents.trip[i] else {
-            return;
-        };
-        let state = &mut self.progress.places[usize::from(trip.place)];
-        state.leave_spot(spot);
-        self.count_wait(i, since);
-        self.go_on(scene, i);
-    }
-
     pub(super) fn count_wait(&mut self, i: usize, since: u64) {
         if let Some(trip) = &mut self.agents.trip[i] {
-            let waited = time_since(&self.clock, since);
+            let waited = self.clock.time() - self.clock.time_at(since);
             trip.waited += waited;
             self.progress.places[usize::from(trip.place)].waited += waited;
         }
@@ -319,8 +261,4 @@ impl Crowd {
 pub(super) fn stage_share(scene: &Scene, id: u32, trip: &Trip) -> f64 {
     let stage = u64::from(trip.stage);
     random::stream(scene.seed, Purpose::Waiting, id, stage).sample(Open01)
-}
-
-fn time_since(clock: &Clock, frame: u64) -> f64 {
-    clock.time() - clock.time_at(frame)
 }

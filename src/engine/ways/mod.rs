@@ -5,50 +5,20 @@
 //! point or corner, and the length. It is exact for polygons with holes, shared by all agents with that goal, and needs
 //! no search per agent; an agent that is pushed off its way looks it up again. [`around`] keeps clear of the corners on
 //! the way.
+//!
+//! Four folders, each of which uses only those before it: `floor` knows no goals, `paths` no agents; `rooms` divides
+//! floors; `routes` has what agents follow and plan.
 
-mod corner;
-mod course;
-mod crossing;
-mod cuts;
-mod edges;
-mod entries;
-mod expansion;
 mod floor;
-mod goal;
-mod grid;
-mod limits;
-mod list;
-mod map;
-mod mesh;
-mod narrow;
-mod narrowings;
-mod opening;
-mod parts;
-mod passage;
-mod plan;
-mod reach;
-mod region;
+mod paths;
 mod rooms;
-mod route;
-mod sight;
-mod steer;
-mod targets;
+mod routes;
 
-pub use corner::{Bend, Corner, Turn};
-pub use course::{Known, Leaving};
-pub use cuts::Door;
-pub use floor::Floor;
-pub use goal::Goal;
-pub use map::{Next, PathMap, SLACK, Way};
-pub use mesh::{Mesh, Triangle, nearest_on, side};
-pub use narrowings::{Narrowing, Narrowings};
-pub use opening::{Opening, Step};
-pub use passage::{Passage, Passages};
-pub use plan::{Detour, Plan};
-pub use reach::Regions;
-pub use rooms::{Rooms, WIDEST};
-pub use route::{Destination, Route, Walker, Ways};
-pub use steer::around;
+pub use floor::{Bend, Corner, Floor, Mesh, Triangle, Turn, nearest_on, side};
+pub use floor::{Narrowing, Narrowings, Passage, Passages};
+pub use paths::{Goal, Next, PathMap, SLACK, Way, around};
+pub use rooms::{Door, Located, Opening, Rooms, Side, WIDEST};
+pub use routes::{Destination, MapKey, Plan, Regions, Route, Shortest, Walker, Ways, WaysOut};
 
 use crate::math::Vector;
 

@@ -7,7 +7,7 @@ use engine::journeys::Kind;
 use engine::math::Vector;
 use engine::scene::Scene;
 use engine::simulation::Simulation;
-use engine::ways::{Destination, Detour, Narrowings, WIDEST, Ways};
+use engine::ways::{Destination, MapKey, Narrowings, WIDEST, Ways};
 
 /// A way through an opening goes on this far behind it, meters.
 const BEYOND: f64 = 1e-3;
@@ -141,18 +141,18 @@ fn course(simulation: &Simulation, ways: &Ways, (i, to): (usize, Destination)) -
     let agents = simulation.frame().agents;
     let p = agents.position[i];
     let plan = agents.plan.get(i).and_then(Option::as_ref);
-    let step = plan.and_then(|plan| match plan.detour(ways, to)? {
-        Detour::Opening(step) => Some((plan, step)),
-        Detour::Room => None,
+    let detour = plan.and_then(|plan| match plan.detour(ways, to)? {
+        MapKey::Opening(side) => Some((plan, side)),
+        MapKey::Floor(_) | MapKey::Room(_) => None,
     });
-    let through = step.and_then(|(plan, step)| {
+    let through = detour.and_then(|(plan, side)| {
         if simulation.progress().places.iter().any(|place| !place.open) {
-            return simulation.way_through(i, plan.goal, step);
+            return simulation.way_through(i, plan.goal, side);
         }
         let rooms = ways.rooms()?;
-        let here = rooms.floor.locate_or_nearest(Some(plan.triangle), p)?;
-        let mut course = rooms.course((p, here), usize::from(plan.goal), Some(step));
-        let behind = course.last()? + rooms.ahead(step) * BEYOND;
+        let here = plan.located.triangle_at(rooms, p)?;
+        let mut course = rooms.course((p, here), usize::from(plan.goal), Some(side));
+        let behind = course.last()? + rooms.ahead(side) * BEYOND;
         course.push(behind);
         course.extend(ways.course(behind, to));
         Some(course)
