@@ -24,8 +24,9 @@ mod results;
 mod frames;
 mod moment;
 mod notes;
-mod output;
 mod reported;
+
+mod output;
 
 mod accuracy;
 mod bench;

@@ -54,6 +54,12 @@ pub struct Watch {
     lines: bool,
 }
 
+impl Default for Watch {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Watch {
     pub fn new() -> Self {
         let template = "{bar:30} {percent} % of the work, {eta} left; {msg}";

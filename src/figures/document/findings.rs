@@ -160,7 +160,8 @@ impl Findings {
         format!("{:#}\n", self.data).into_bytes()
     }
 
-    /// Writes everything into a folder, which is created if it does not exist, and returns the paths, which are those of [`Names::in_folder`].
+    /// Writes everything into a folder, which is created if it does not exist. Returns the paths of
+    /// [`Names::in_folder`].
     ///
     /// # Errors
     /// A figure cannot be drawn, or a file cannot be written.
