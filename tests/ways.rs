@@ -12,7 +12,12 @@ fn heading(floor: &Floor, p: Vector, way: &Way, clearance: f64) -> Vector {
     match way.next {
         Next::Corner(bend) => {
             let distance = (floor.place(bend) - p).norm();
-            around(floor, (p, distance), (bend, way.borders.unwrap()), clearance)
+            around(
+                floor,
+                (p, distance),
+                (bend, way.borders.unwrap()),
+                clearance,
+            )
         }
         Next::Goal(point) | Next::Out(point) => direction(point - p),
     }

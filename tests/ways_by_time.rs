@@ -197,7 +197,12 @@ fn times_and_flows_follow_from_positions_and_choices() {
         let agents = simulation.frame().agents;
         for (&id, plan) in agents.id.iter().zip(&agents.plan) {
             let side = plan.and_then(|plan| plan.toward);
-            toward.insert(id, gates.iter().position(|gate| side.is_some() && gate.side == side));
+            toward.insert(
+                id,
+                gates
+                    .iter()
+                    .position(|gate| side.is_some() && gate.side == side),
+            );
         }
         if !is_second {
             continue;
