@@ -45,7 +45,7 @@ enum Command {
     Walls(WallOptions),
     /// How often do the intervals of `sandbox estimate` hold the value? (some hours)
     #[command(
-        after_help = "Example: cargo run --release -p experiments -- coverage --seeds 60 --update docs/tables/accuracy.md --out DIR"
+        after_help = "Example: cargo run --release -p experiments -- coverage --seeds 60 --out DIR"
     )]
     Coverage(CoverageOptions),
     /// Open questions of crowd physics: crowds of the model in situations with known experiments (hours)

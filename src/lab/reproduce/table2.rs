@@ -101,8 +101,8 @@ impl CrossingTable {
             Block::table(rows.table()),
             Block::text(row::kept(&self.rows, seeds)),
             Block::text(format!(
-                "Of the rows that differ by more than {percent} % in the paper, {flows} of {all_flows} rankings of flow \
-                 and {densities} of {all_densities} of density are kept."
+                "Of the rows that differ by more than {percent} % in the paper, {flows} of {all_flows} rankings of \
+                 flow and {densities} of {all_densities} of density are kept."
             )),
             Block::table(self.rankings_table()),
         ]

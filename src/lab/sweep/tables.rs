@@ -38,7 +38,8 @@ const COUNTS: [Count; 9] = [
 type Row<'a> = (&'a Cell, &'a State);
 
 impl Study {
-    /// The names of the files with results: one row per cell, means over seeds, and mean curves if the runs measure any.
+    /// The names of the files with results: one row per cell, means over seeds, and mean curves if the runs measure
+    /// any.
     pub fn names(&self) -> Names {
         let curves = self.curves_name();
         Names::new(

@@ -111,8 +111,8 @@ macro_rules! parameters {
 
 parameters! {
     /// Parameters of a profile; `None` means the paper's value (§5.5). Where a text says that the paper's time step is
-    /// too long, Δt = 0.02 s is beyond the formula of `docs/findings/stability.md`, and agents shake; `time_step_secs` `auto`
-    /// finds the step.
+    /// too long, Δt = 0.02 s is beyond the formula of `docs/findings/stability.md`, and agents shake; `time_step_secs`
+    /// `auto` finds the step.
     #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields, default)]
     #[schemars(transform = describe)]
