@@ -293,3 +293,30 @@ fn values_that_are_not_as_expected_are_bold() {
         );
     }
 }
+
+#[test]
+fn a_run_with_files_of_results_and_a_checkpoint_can_be_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    inputs(folder);
+    let first = [
+        "run",
+        "room.json",
+        "--until",
+        "1",
+        "--checkpoint",
+        "c",
+        "-o",
+        "x.json",
+        "--json",
+    ];
+    room::done(folder, &first);
+    let resumed = room::done(folder, &["resume", "c", "-o", "r.json", "--json"]);
+    let whole = room::done(folder, &["run", "room.json", "--json"]);
+    for key in ["state_sha256", "metrics"] {
+        assert_eq!(resumed[key], whole[key], "{key}");
+    }
+    let text = fs::read_to_string(folder.join("r.json")).unwrap();
+    let written: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(written["metrics"], whole["metrics"]);
+}

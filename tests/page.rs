@@ -222,6 +222,10 @@ fn draw_makes_the_page_of_a_run_and_refuses_what_pages_do_not_have() {
     assert_eq!(fs::read(one).unwrap(), fs::read(other).unwrap());
     let of_pictures = ["draw", tracks, "-o", wrong, "--field", "speed"];
     refused(&of_pictures, 2, &["--field is for pictures", ".svg"]);
+    let other_profile = ["draw", tracks, "-o", wrong, "--profile", "sf"];
+    refused(&other_profile, 2, &["--profile needs a scenario"]);
+    let picture = ["draw", tracks, "-o", "a.svg", "--page-viewer", "viewer"];
+    refused(&picture, 2, &["--page-viewer viewer: is for pages"]);
     let scenario = ["draw", "evacuation", "-o", wrong];
     refused(&scenario, 2, &["sandbox run evacuation --save"]);
     assert!(!Path::new(wrong).exists());

@@ -33,7 +33,8 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     let mut whole = scenario(source, &options.scene, until, writing, &mut outputs)?;
     check(outputs, &options.output, &whole)?;
     let is_reported = options.output.files.are_given();
-    if is_reported {
+    // A checkpoint has the scenario's own measurements, with which it is resumed.
+    if is_reported && options.output.checkpoint.checkpoint.is_none() {
         complete(&mut whole)?;
     }
     if let Some(warning) = of_step(&whole.scene) {

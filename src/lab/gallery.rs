@@ -1,29 +1,14 @@
-//! What the pictures of studies share: curves with dots, medians, maps with text, bands, ranges of axes, one legend for
-//! all panels, and saving. The pictures of each study only say what is on which axis.
-
-use std::path::Path;
+//! What the pictures of studies share: curves with dots, medians, maps with text, bands, ranges of axes, and one legend
+//! for all panels. The pictures of each study only say what is on which axis.
 
 use analysis::statistics::{Estimate, Range};
 use output::colors::{Rgb, light};
 use output::plot::{
-    Axis, BLACK, Cells, ColorBar, Corner, LINES, Mark, Panel, PlotError, Point, Sheet, Style,
-    line_color,
+    Axis, BLACK, Cells, ColorBar, Corner, LINES, Mark, Panel, Point, Sheet, Style, line_color,
 };
 
 /// Gray, for bands of measured values.
 pub const BAND: Rgb = [225, 225, 225];
-
-/// Saves sheets by the names of their files, each in all formats that the program writes.
-///
-/// # Errors
-/// A sheet cannot be drawn or a file cannot be written.
-pub fn save<N: AsRef<Path>>(
-    folder: &Path,
-    sheets: impl IntoIterator<Item = (N, Sheet)>,
-) -> Result<(), PlotError> {
-    let mut sheets = sheets.into_iter();
-    sheets.try_for_each(|(name, sheet)| sheet.save(&folder.join(name)))
-}
 
 /// A sheet with one panel and its legend beside it.
 pub fn single(title: &str, x: Axis, y: Axis, marks: Vec<Mark>) -> Sheet {

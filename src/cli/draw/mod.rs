@@ -98,6 +98,11 @@ pub fn run(options: &DrawOptions) -> Result<(), Failure> {
     if is_page(&out) {
         return super::page::run(&page(options, out)?);
     }
+    if let Some(folder) = &options.page_viewer {
+        let (folder, file) = (folder.display(), out.display());
+        let reason = format!("--page-viewer {folder}: is for pages, and {file} is a picture");
+        return Err(Failure::Input(reason));
+    }
     if options.egress {
         check_format(&out, false)?;
         return egress::draw(options, &out, outputs);
@@ -155,6 +160,7 @@ fn page(options: &DrawOptions, out: PathBuf) -> Result<PageOptions, Failure> {
             out.display()
         )));
     }
+    refuse_settings(options, scene)?;
     Ok(PageOptions {
         run,
         out: Some(out),

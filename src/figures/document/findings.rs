@@ -216,11 +216,12 @@ impl Findings {
             }
             Ending::Csv => {
                 let mut tables = self.tables.iter();
-                let main = tables.next().map(|(_, bytes)| bytes.clone());
+                let none = || PlotError::NoTable(file.to_owned());
+                let (_, main) = tables.next().ok_or_else(none)?;
                 let further =
                     tables.map(|(name, bytes)| (sibling(file, name, "csv"), bytes.clone()));
                 beside.extend(further);
-                main.unwrap_or_default()
+                main.clone()
             }
         };
         let mut written = Vec::new();

@@ -21,6 +21,9 @@ pub enum PlotError {
         /// The reason.
         reason: std::io::Error,
     },
+    /// The results have no table.
+    #[error("{}: these results have no table; give a file in .html, .pdf, .md or .json", .0.display())]
+    NoTable(PathBuf),
     /// There is no program that writes videos.
     #[error(
         "cannot write {}: videos need the program ffmpeg, which is not installed or not in PATH ({reason}); install \
