@@ -315,7 +315,7 @@ fn results_are_replaced_only_with_force_and_the_tables_go_into_a_document() {
     assert_eq!(again.status.code(), Some(2));
     let said = String::from_utf8(again.stderr).unwrap();
     assert!(
-        said.contains("walls.md") && said.contains("--force"),
+        said.contains("walls.json") && said.contains("--force"),
         "{said}"
     );
     assert_eq!(run(&["--force"]).status.code(), Some(0));
