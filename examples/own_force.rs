@@ -19,12 +19,8 @@ impl Force for Slope {
     }
 
     // The slope pushes equally at all places on it and at all velocities: it does not limit the time step.
-    fn stiffness(&self) -> f64 {
-        0.0
-    }
-
-    fn friction(&self) -> f64 {
-        0.0
+    fn rates(&self, _: &Extremes) -> Rates {
+        Rates::default()
     }
 
     fn acceleration(&self, frame: &Frame, i: usize) -> Vector {

@@ -6,6 +6,7 @@ use sandbox::engine::agents::{Agents, NewAgent};
 use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::math::Vector;
 use sandbox::engine::placement::Grid;
+use sandbox::engine::profile::Term;
 use sandbox::engine::random::{Purpose, stream};
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::Scenario;
@@ -132,7 +133,12 @@ fn a_part_of_the_radius_counts_in_contacts() {
             .to_vec();
         let simulation = evaluated(scene);
         let [own, other] = [0, 1].map(|id| breakdown(&simulation, id));
-        let push = |of: &Breakdown| of.profiles[0].accelerations.contact_agents.unwrap();
+        let push = |of: &Breakdown| {
+            of.profiles[0]
+                .accelerations
+                .get(Term::ContactAgents)
+                .unwrap()
+        };
         assert!((push(&own) + push(&other)).norm() < 1e-12);
         own
     };
@@ -143,13 +149,16 @@ fn a_part_of_the_radius_counts_in_contacts() {
             wall_contact_scale: Some(wall_scale),
             ..Parameters::default()
         });
-        let own = part.profiles[0].accelerations;
+        let own = part.profiles[0].accelerations.clone();
         let agents = -1000.0 * (0.48 * scale - 0.3).max(0.0);
         let wall = 1000.0 * (0.24 * wall_scale - 0.1).max(0.0);
-        assert!((own.contact_agents.unwrap() - vector(agents, 0.0)).norm() < 1e-9);
-        assert!((own.contact_walls.unwrap() - vector(0.0, wall)).norm() < 1e-9);
-        let of_whole = whole.profiles[0].accelerations;
-        assert_eq!(own.social_agents, of_whole.social_agents);
+        assert!((own.get(Term::ContactAgents).unwrap() - vector(agents, 0.0)).norm() < 1e-9);
+        assert!((own.get(Term::ContactWalls).unwrap() - vector(0.0, wall)).norm() < 1e-9);
+        let of_whole = whole.profiles[0].accelerations.clone();
+        assert_eq!(
+            own.get(Term::SocialAgents),
+            of_whole.get(Term::SocialAgents)
+        );
         assert_eq!((part.mass, part.radius), (whole.mass, whole.radius));
     }
 }

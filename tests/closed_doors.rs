@@ -1,5 +1,6 @@
 //! Declared doors: whom they count, whom they hold back, and what is said of people who stand before them.
 
+use sandbox::engine::forces::legs::lean;
 use sandbox::runs::drive::Run;
 use serde_json::{Value, json};
 
@@ -92,7 +93,7 @@ fn legs_stay_within_the_limit_of_the_lean_where_a_closed_door_holds_the_body_bac
         run.simulation.integrate().unwrap();
         let agents = run.simulation.frame().agents;
         for i in 0..agents.len() {
-            most = most.max(agents.lean(i).norm());
+            most = most.max(lean(agents, i).norm());
             held += usize::from((agents.position[i].x - 6.0).abs() < 0.002);
         }
     }

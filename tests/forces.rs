@@ -10,10 +10,11 @@ use proptest::prelude::*;
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::forces::own::Force;
+use sandbox::engine::forces::rates::{Extremes, Rates};
 use sandbox::engine::frame::Frame;
 use sandbox::engine::geometry::Polygon;
 use sandbox::engine::math::Vector;
-use sandbox::engine::profile::Terms;
+use sandbox::engine::profile::Term;
 use sandbox::engine::scene::Scene;
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::{NAMES, Parameters};
@@ -77,10 +78,10 @@ fn crowd(count: u32, side: f64) -> Vec<NewAgent> {
         .collect()
 }
 
-fn sum_of(simulation: &Simulation, term: impl Fn(&Terms) -> Option<Vector>) -> Vector {
+fn sum_of(simulation: &Simulation, term: Term) -> Vector {
     let ids = 0..simulation.frame().agents.len() as u32;
     ids.map(|id| breakdown(simulation, id))
-        .map(|agent| term(&agent.profiles[0].accelerations).unwrap() * agent.mass)
+        .map(|agent| agent.profiles[0].accelerations.get(term).unwrap() * agent.mass)
         .sum()
 }
 
@@ -116,11 +117,10 @@ proptest! {
         let simulation = evaluated(pressing_pair(distance, angle, masses, means));
         let [first, second] = [0, 1].map(|id| breakdown(&simulation, id));
         prop_assert!(first.pressure >= 0.0 && second.pressure >= 0.0);
-        let terms: [fn(&Terms) -> Option<Vector>; 3] =
-            [|t| t.pressure_agents, |t| t.viscosity, |t| t.contact_agents];
+        let terms = [Term::PressureAgents, Term::Viscosity, Term::ContactAgents];
         for (k, term) in terms.into_iter().enumerate() {
             let [a, b] = [&first, &second].map(|agent| {
-                term(&agent.profiles[0].accelerations).unwrap() * agent.mass
+                agent.profiles[0].accelerations.get(term).unwrap() * agent.mass
             });
             prop_assert!((a + b).norm() <= 1e-12 * (1.0 + a.norm()), "{a:?} {b:?}");
             prop_assert!(k == 1 || a.dot(&vector(angle.cos(), angle.sin())) <= 0.0, "they repel");
@@ -132,10 +132,10 @@ proptest! {
         let at_rest = pressing_crowd(Vector::zeros());
         let moving = pressing_crowd(vector(x, y));
         for id in 0..12 {
-            let [a, b] = [&at_rest, &moving].map(|s| breakdown(s, id).profiles[0].accelerations);
-            prop_assert_eq!(a.pressure_agents, b.pressure_agents);
-            prop_assert_eq!(a.contact_agents, b.contact_agents);
-            let difference = a.viscosity.unwrap() - b.viscosity.unwrap();
+            let [a, b] = [&at_rest, &moving].map(|s| breakdown(s, id).profiles[0].accelerations.clone());
+            prop_assert_eq!(a.get(Term::PressureAgents), b.get(Term::PressureAgents));
+            prop_assert_eq!(a.get(Term::ContactAgents), b.get(Term::ContactAgents));
+            let difference = a.get(Term::Viscosity).unwrap() - b.get(Term::Viscosity).unwrap();
             prop_assert!(difference.norm() < 1e-11);
         }
     }
@@ -198,9 +198,9 @@ fn forces_in_a_pressing_crowd_conserve_momentum() {
     let simulation = pressing_crowd(Vector::zeros());
     let fields = simulation.frame().fields;
     assert!(fields.pressure.iter().all(|&p| p > 0.0));
-    assert!(sum_of(&simulation, |terms| terms.pressure_agents).norm() < 1e-10);
-    assert!(sum_of(&simulation, |terms| terms.viscosity).norm() < 1e-10);
-    assert!(sum_of(&simulation, |terms| terms.contact_agents).norm() < 1e-10);
+    assert!(sum_of(&simulation, Term::PressureAgents).norm() < 1e-10);
+    assert!(sum_of(&simulation, Term::Viscosity).norm() < 1e-10);
+    assert!(sum_of(&simulation, Term::ContactAgents).norm() < 1e-10);
 }
 
 #[test]
@@ -209,7 +209,7 @@ fn agents_below_their_rest_density_feel_no_pressure_and_press_less_on_others() {
     let pressed = |simulation: &Simulation, id| {
         breakdown(simulation, id).profiles[0]
             .accelerations
-            .pressure_agents
+            .get(Term::PressureAgents)
             .unwrap()
     };
     let lopsided = pair([0.0, 5.0]);
@@ -262,14 +262,17 @@ fn coincident_agents_have_finite_accelerations() {
 fn pressure_viscosity_and_contact_are_zero_at_their_ranges() {
     let at = |distance: f64| {
         let simulation = evaluated(pressing_pair(distance, 0.0, [1.0, 1.0], [0.0, 0.0]));
-        breakdown(&simulation, 0).profiles[0].accelerations
+        breakdown(&simulation, 0).profiles[0].accelerations.clone()
     };
     let [inside, outside] = [at(0.999_999), at(1.0)];
-    assert!(inside.viscosity.unwrap().norm() > 0.0 && inside.pressure_agents.unwrap().norm() > 0.0);
-    assert_eq!(outside.viscosity, Some(Vector::zeros()));
-    assert_eq!(outside.pressure_agents, Some(Vector::zeros()));
-    assert!(at(0.479_999).contact_agents.unwrap().norm() > 0.0);
-    assert_eq!(at(0.48).contact_agents, Some(Vector::zeros()));
+    assert!(
+        inside.get(Term::Viscosity).unwrap().norm() > 0.0
+            && inside.get(Term::PressureAgents).unwrap().norm() > 0.0
+    );
+    assert_eq!(outside.get(Term::Viscosity), Some(Vector::zeros()));
+    assert_eq!(outside.get(Term::PressureAgents), Some(Vector::zeros()));
+    assert!(at(0.479_999).get(Term::ContactAgents).unwrap().norm() > 0.0);
+    assert_eq!(at(0.48).get(Term::ContactAgents), Some(Vector::zeros()));
 }
 
 #[test]
@@ -279,11 +282,13 @@ fn a_corner_counts_twice_in_contact_and_once_in_the_social_force() {
     let away = vector(0.6, 0.8) * 0.2;
     let mut scene = scene(vec![obstacle], blend("sf"));
     scene.agents = vec![person(corner + away, vector(9.0, 9.0))];
-    let terms = breakdown(&evaluated(scene), 0).profiles[0].accelerations;
+    let terms = breakdown(&evaluated(scene), 0).profiles[0]
+        .accelerations
+        .clone();
     let social = vector(0.6, 0.8) * (2.1 / 0.1 * (-2.0_f64).exp());
-    assert!((terms.social_walls.unwrap() - social).norm() < 1e-11);
+    assert!((terms.get(Term::SocialWalls).unwrap() - social).norm() < 1e-11);
     let contact = vector(0.6, 0.8) * (2.0 * 1000.0 * 0.04);
-    assert!((terms.contact_walls.unwrap() - contact).norm() < 1e-9);
+    assert!((terms.get(Term::ContactWalls).unwrap() - contact).norm() < 1e-9);
 }
 
 #[test]
@@ -291,11 +296,13 @@ fn contact_acts_from_both_faces_of_a_wall_and_the_social_force_from_one() {
     let thin = polygon(&[[-3.0, 0.0], [3.0, 0.0], [3.0, 0.01], [-3.0, 0.01]]);
     let mut scene = scene(vec![thin], blend("sf"));
     scene.agents = vec![person(vector(0.0, 0.11), vector(0.0, 9.0))];
-    let terms = breakdown(&evaluated(scene), 0).profiles[0].accelerations;
+    let terms = breakdown(&evaluated(scene), 0).profiles[0]
+        .accelerations
+        .clone();
     let expected = 1000.0 * ((0.24 - 0.1) + (0.24 - 0.11));
-    assert!((terms.contact_walls.unwrap().y - expected).abs() < 1e-9);
+    assert!((terms.get(Term::ContactWalls).unwrap().y - expected).abs() < 1e-9);
     let social = 2.1 / 0.1 * (-1.0_f64).exp();
-    assert!((terms.social_walls.unwrap().y - social).abs() < 1e-9);
+    assert!((terms.get(Term::SocialWalls).unwrap().y - social).abs() < 1e-9);
 }
 
 #[test]
@@ -313,8 +320,10 @@ fn a_wall_pushes_an_agent_on_it_along_its_outward_normal() {
         let place = start + along * (1.0 + 0.005 * f64::from(k));
         let mut scene = scene(vec![Polygon::new(triangle).unwrap()], blend("sph"));
         scene.agents = vec![person(place, place)];
-        let terms = breakdown(&evaluated(scene), 0).profiles[0].accelerations;
-        let push = terms.contact_walls.unwrap();
+        let terms = breakdown(&evaluated(scene), 0).profiles[0]
+            .accelerations
+            .clone();
+        let push = terms.get(Term::ContactWalls).unwrap();
         assert!(
             (push - outward * 200.0 * 0.24).norm() < 1e-3,
             "{k}: {push:?}"
@@ -333,12 +342,8 @@ impl Force for Wind {
         "wind"
     }
 
-    fn stiffness(&self) -> f64 {
-        0.0
-    }
-
-    fn friction(&self) -> f64 {
-        0.0
+    fn rates(&self, _: &Extremes) -> Rates {
+        Rates::default()
     }
 
     fn needs_density(&self) -> bool {

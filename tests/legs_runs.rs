@@ -1,5 +1,6 @@
 //! Runs of crowds on legs: walls, threads, resumed runs, periodic scenes, breakdowns, measurements, errors.
 
+use sandbox::engine::forces::legs::{self, lean};
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
 use sandbox::engine::period::{Axis, Period};
@@ -36,10 +37,10 @@ fn legs_stay_in_the_room_and_within_the_limit_of_the_lean() {
         run(&mut simulation, 1);
         let agents = simulation.frame().agents;
         for i in 0..agents.len() {
-            let legs = agents.legs[i];
+            let legs = legs::position(agents, i).unwrap();
             let is_inside = simulation.scene().walls.obstacle_at(legs).is_none();
             assert!(is_inside, "{legs} is in a wall");
-            let lean = agents.lean(i).norm();
+            let lean = lean(agents, i).norm();
             assert!(lean < 0.55 + 1e-12, "{lean}");
             leaning += usize::from(lean > 0.05);
         }
@@ -80,8 +81,8 @@ fn a_crowd_without_legs_has_no_state_of_legs() {
     let mut simulation = Simulation::new(scene).unwrap();
     run(&mut simulation, 3);
     let frame = simulation.frame();
-    assert!(frame.agents.legs.is_empty() && frame.agents.legs_velocity.is_empty());
-    assert_eq!(frame.agents.lean(0), Vector::zeros());
+    assert!(frame.agents.states.is_empty());
+    assert_eq!(lean(frame.agents, 0), Vector::zeros());
 }
 
 #[test]
@@ -107,7 +108,11 @@ fn legs_come_along_across_the_ends_of_a_period() {
         let agents = simulation.frame().agents;
         let of = |id: u32| {
             let i = agents.index_of(id).unwrap();
-            (agents.velocity[i], agents.legs_velocity[i], agents.lean(i))
+            (
+                agents.velocity[i],
+                legs::velocity(agents, i).unwrap(),
+                lean(agents, i),
+            )
         };
         (0..40).map(of).collect::<Vec<_>>()
     };
@@ -129,15 +134,15 @@ fn the_terms_of_bodies_and_of_legs_add_up() {
         let found = breakdown(&simulation, id);
         let off = (found.weighted_sum() - Vector::from(found.acceleration)).norm();
         assert!(off < 1e-9, "{id}: {off}");
-        let legs = found.legs.unwrap();
-        let sum: Vector = [legs.balance, legs.agents, legs.walls]
-            .map(Vector::from)
-            .iter()
-            .sum();
-        assert!(
-            (sum - Vector::from(legs.acceleration)).norm() < 1e-9,
-            "{id}"
-        );
+        let legs = &found.states[0];
+        let parts = legs.vectors.iter().map(|(_, part)| Vector::from(*part));
+        let parts: Vec<Vector> = parts.collect();
+        let sum: Vector = parts[..3].iter().sum();
+        assert!((sum - parts[3]).norm() < 1e-9, "{id}");
+        let frame = simulation.frame();
+        let i = frame.agents.index_of(id).unwrap();
+        let rates = &frame.fields.state_rates[0][4 * i..4 * i + 4];
+        assert!((sum - vector(rates[2], rates[3])).norm() < 1e-12, "{id}");
         assert!(found.to_string().contains("legs_walls"), "{found}");
     }
 }
@@ -155,7 +160,10 @@ fn profiles_of_a_blend_share_their_legs() {
         Parameters::default().sph(),
         vec![with_legs, plain],
     );
-    assert_eq!(blend.unwrap_err(), BlendError::DifferentLegs);
+    assert_eq!(
+        blend.unwrap_err(),
+        BlendError::DifferentForces("legs".to_owned())
+    );
 }
 
 #[test]

@@ -11,6 +11,7 @@ use sandbox::engine::agents::NewAgent;
 use sandbox::engine::geometry::Walls;
 use sandbox::engine::kernel;
 use sandbox::engine::math::Vector;
+use sandbox::engine::profile::Term;
 use sandbox::engine::simulation::Simulation;
 use sandbox::runs::summary::Summary;
 use sandbox::scenario::catalog::Parameters;
@@ -45,10 +46,11 @@ fn a_pair_presses_with_equal_newtons_whatever_the_masses() {
     for id in 0..2 {
         let i = simulation.frame().agents.index_of(id).unwrap();
         let of = breakdown(&simulation, id);
-        let terms = of.profiles[0].accelerations;
-        let acceleration = terms.pressure_agents.unwrap() + terms.contact_agents.unwrap();
-        assert!(terms.pressure_agents.unwrap().norm() > 1.0);
-        assert!(terms.contact_agents.unwrap().norm() > 1.0);
+        let terms = of.profiles[0].accelerations.clone();
+        let acceleration =
+            terms.get(Term::PressureAgents).unwrap() + terms.get(Term::ContactAgents).unwrap();
+        assert!(terms.get(Term::PressureAgents).unwrap().norm() > 1.0);
+        assert!(terms.get(Term::ContactAgents).unwrap().norm() > 1.0);
         // The only partner: r ⊗ a.
         let arm = if id == 0 { a - b } else { b - a };
         let expected = [

@@ -12,6 +12,7 @@ use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::forces::social::SocialForce;
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
+use sandbox::engine::profile::Term;
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::Scenario;
 use sandbox::scenario::catalog::{ALIASES, NAMES};
@@ -181,11 +182,12 @@ fn check(ours: &Breakdown, crowd: &plain::Crowd, i: &plain::Agent, at: &str) {
         let sizes = magnitudes(crowd, i, profile, social_rounding);
         total += sizes.values().sum::<f64>();
         let terms: BTreeMap<_, _> = plain::terms(crowd, i, profile).into_iter().collect();
-        for (term, value) in share.accelerations.listed() {
-            let plain = terms.get(term.name()).copied().unwrap_or_default();
+        for &term in Term::ALL {
+            let (name, value) = (term.name(), share.accelerations.get(term));
+            let plain = terms.get(name).copied().unwrap_or_default();
             let error = (value.unwrap_or_default() - engine_vector(plain)).norm();
-            let size = sizes.get(term.name()).copied().unwrap_or_default();
-            let what = format!("{at}: {}: {value:?}, {plain:?}", term.name());
+            let size = sizes.get(name).copied().unwrap_or_default();
+            let what = format!("{at}: {name}: {value:?}, {plain:?}");
             assert!(error <= DOUBLE * size, "{what}, {error:e} of {size}");
         }
     }

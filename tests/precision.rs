@@ -7,6 +7,7 @@ use sandbox::engine::agents::NewAgent;
 use sandbox::engine::kernel;
 use sandbox::engine::math::{Vector, direction};
 use sandbox::engine::pairs::{Precision, Real};
+use sandbox::engine::profile::Term;
 use sandbox::engine::scene::Scene;
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::Parameters;
@@ -63,8 +64,14 @@ fn magnitude(simulation: &Simulation, i: usize) -> f64 {
         let contact = (direction(r_ij) * overlap).norm() * 50.0 / agents.mass[i];
         (pressure + viscosity) / fields.density[i] + contact
     });
-    let share = common::breakdown(simulation, agents.id[i]).profiles[0].accelerations;
-    let others = [share.goal, share.pressure_walls, share.contact_walls];
+    let share = common::breakdown(simulation, agents.id[i]).profiles[0]
+        .accelerations
+        .clone();
+    let others = [
+        share.get(Term::Goal),
+        share.get(Term::PressureWalls),
+        share.get(Term::ContactWalls),
+    ];
     let others = others.map(|term| term.map_or(0.0, |term| term.norm()));
     pairs.sum::<f64>() + others.iter().sum::<f64>()
 }

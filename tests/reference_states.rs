@@ -7,6 +7,7 @@ use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::geometry::Polygon;
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
+use sandbox::engine::profile::Term;
 use sandbox::engine::scene::{Group, Scene};
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::{self, Parameters};
@@ -139,8 +140,8 @@ fn check_agent(ours: &Breakdown, theirs: &Expected, at: &str) {
     for (ours, theirs) in ours.profiles.iter().zip(&theirs.profiles) {
         assert_eq!(ours.name, theirs.name, "{at}");
         assert_close(ours.weight, theirs.weight, &format!("{at}: weight"));
-        for (term, value) in ours.accelerations.listed() {
-            let name = term.name();
+        for &term in Term::ALL {
+            let (name, value) = (term.name(), ours.accelerations.get(term));
             let expected = theirs.accelerations.get(name);
             let expected = expected.copied().unwrap_or_default();
             let ours = value.unwrap_or_default();

@@ -19,6 +19,7 @@ use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::prelude::*;
 use sandbox::engine::pairs::{Simd, f64x8};
+use sandbox::engine::profile::Term;
 use sandbox::engine::simulation::Simulation;
 
 /// A situation with discs at known places.
@@ -287,7 +288,7 @@ fn agents_that_already_touch_are_ignored() {
         ];
         breakdown(&evaluated(scene), 0).profiles[0]
             .accelerations
-            .rvo
+            .get(Term::Rvo)
             .unwrap()
     };
     assert_eq!(with(0.479), alone);
@@ -301,7 +302,7 @@ fn a_wall_that_already_touches_is_ignored() {
         scene.agents = vec![walker(Vector::zeros(), vector(1.4, 0.0), vector(90.0, 0.0))];
         breakdown(&evaluated(scene), 0).profiles[0]
             .accelerations
-            .rvo
+            .get(Term::Rvo)
             .unwrap()
     };
     let alone = among("rvo", &[], Vec::new());

@@ -5,6 +5,7 @@ use sandbox::engine::clock::Clock;
 use sandbox::engine::math::Vector;
 use sandbox::engine::placement::Grid;
 use sandbox::engine::profile::Override;
+use sandbox::engine::profile::Term;
 use sandbox::engine::scene::{Goal, Push, Region, Scene, Source};
 use sandbox::engine::simulation::{EventKind, Simulation};
 
@@ -126,21 +127,21 @@ fn a_push_changes_agents_in_its_region_and_others_still_feel_them() {
         }
         for id in 0..24 {
             let agent = breakdown(&simulation, id);
-            let terms = agent.profiles[0].accelerations;
+            let terms = agent.profiles[0].accelerations.clone();
             let active = (10..25).contains(&frame) && pushing.contains(&id);
             assert_eq!(
-                terms.pressure_agents.is_none(),
+                terms.get(Term::PressureAgents).is_none(),
                 active,
                 "frame {frame}, agent {id}"
             );
-            assert_eq!(terms.contact_agents.is_none(), active);
-            assert_eq!(terms.contact_walls.is_none(), active);
+            assert_eq!(terms.get(Term::ContactAgents).is_none(), active);
+            assert_eq!(terms.get(Term::ContactWalls).is_none(), active);
             let view = simulation.frame();
             let i = view.agents.index_of(id).unwrap();
             let wish = view.fields.preferred_velocity[i] - view.agents.velocity[i];
             let scale = if active { 2.5 } else { 1.0 };
             let expected = wish * (scale / 0.5 / agent.mass);
-            assert!((terms.goal.unwrap() - expected).norm() < 1e-12);
+            assert!((terms.get(Term::Goal).unwrap() - expected).norm() < 1e-12);
             assert!(agent.neighbors.len() > 1);
         }
         if frame == 10 {

@@ -67,7 +67,7 @@ fn needs_follow_from_the_profiles() {
         social: false,
         walking: false,
         headings: false,
-        legs: false,
+        reach: 0.0,
         avoidance: None,
         removal: false,
         paces: false,

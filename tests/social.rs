@@ -9,6 +9,7 @@ use sandbox::engine::agents::NewAgent;
 use sandbox::engine::forces::social::SocialForce;
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
+use sandbox::engine::profile::Term;
 use sandbox::engine::random::{Purpose, stream};
 use sandbox::engine::scene::{Group, Scene};
 use sandbox::engine::simulation::Simulation;
@@ -59,8 +60,8 @@ fn pair_forces_with(social: &SocialForce, simulation: &Simulation, i: usize) -> 
 fn engine_sum(simulation: &Simulation, i: usize) -> Vector {
     let frame = simulation.frame();
     let breakdown = common::breakdown(simulation, frame.agents.id[i]);
-    let terms = breakdown.profiles[0].accelerations;
-    terms.social_agents.unwrap()
+    let terms = breakdown.profiles[0].accelerations.clone();
+    terms.get(Term::SocialAgents).unwrap()
 }
 
 /// 300 people at random in a square of `side` meters centered at `corner`, at up to 1.7 m/s.

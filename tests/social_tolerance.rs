@@ -8,6 +8,7 @@ use sandbox::engine::agents::NewAgent;
 use sandbox::engine::forces::social::SocialForce;
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
+use sandbox::engine::profile::Term;
 use sandbox::engine::random::{Purpose, stream};
 use sandbox::scenario::catalog::Parameters;
 
@@ -38,8 +39,10 @@ fn accelerations(
     let simulation = common::evaluated(scene);
     let ids = 0..agents.len() as u32;
     let breakdowns = ids.map(|id| common::breakdown(&simulation, id));
-    let terms = breakdowns.map(|breakdown| breakdown.profiles[0].accelerations);
-    terms.map(|terms| terms.social_agents.unwrap()).collect()
+    let terms = breakdowns.map(|breakdown| breakdown.profiles[0].accelerations.clone());
+    terms
+        .map(|terms| terms.get(Term::SocialAgents).unwrap())
+        .collect()
 }
 
 #[test]

@@ -7,6 +7,7 @@ use crate::common::{
 };
 use sandbox::engine::clock::Clock;
 use sandbox::engine::forces::own::Force;
+use sandbox::engine::forces::rates::{Extremes, Rates};
 use sandbox::engine::frame::Frame;
 use sandbox::engine::math::Vector;
 use sandbox::engine::profile::Term;
@@ -29,12 +30,12 @@ impl Force for Rail {
         "rail"
     }
 
-    fn stiffness(&self) -> f64 {
-        self.stiffness
-    }
-
-    fn friction(&self) -> f64 {
-        self.friction
+    fn rates(&self, _: &Extremes) -> Rates {
+        Rates {
+            everywhere: self.stiffness,
+            friction: self.friction,
+            ..Rates::default()
+        }
     }
 
     fn acceleration(&self, frame: &Frame, i: usize) -> Vector {
@@ -93,8 +94,6 @@ fn stiff(term: Term) -> Vec<Parameters> {
         Term::Viscosity => all.viscosity = much,
         Term::ContactAgents => all.agent_stiffness = more,
         Term::ContactWalls => all.wall_stiffness = more,
-        Term::Balance => (all.legs, all.unbalancing_rate) = (Some(true), much),
-        Term::BodyAgents | Term::BodyWalls => (all.legs, all.legs_strength) = (Some(true), more),
     }
     vec![all]
 }
@@ -125,14 +124,44 @@ fn walking(law: WalkingLawKind) -> Parameters {
     all
 }
 
+/// The automatic step of one agent with this profile, seconds.
+fn step(name: &str, parameters: &Parameters) -> f64 {
+    let mut scene = scene(Vec::new(), blend_with(name, parameters));
+    scene.agents = vec![person(Vector::zeros(), vector(9.0, 0.0))];
+    time_step(&scene).unwrap()
+}
+
+#[test]
+fn every_stiff_force_that_is_not_in_the_paper_shortens_the_automatic_step() {
+    // Each parameter that is true or false is the switch of one such force.
+    let properties = &schema()["$defs"]["Parameters"]["properties"];
+    let switches = properties.as_object().unwrap().iter();
+    let switches = switches.filter(|(_, property)| property["type"][0] == "boolean");
+    let switches: Vec<&String> = switches.map(|(name, _)| name).collect();
+    assert_eq!(switches, ["legs"]);
+    let [much, more] = [Some(1e3), Some(1e6)];
+    let all = [
+        walking(WalkingLawKind::Drag),
+        Parameters {
+            legs: Some(true),
+            unbalancing_rate: much,
+            ..Parameters::default()
+        },
+        Parameters {
+            legs: Some(true),
+            legs_strength: more,
+            ..Parameters::default()
+        },
+    ];
+    for parameters in all {
+        let [soft, stiff] = [&Parameters::default(), &parameters].map(|of| step("sph", of));
+        assert!(stiff < soft, "{parameters:?}: {stiff} s, {soft} s");
+    }
+}
+
 #[test]
 fn every_stiff_force_shortens_the_automatic_step() {
-    let step = |name: &str, parameters: &Parameters| {
-        let mut scene = scene(Vec::new(), blend_with(name, parameters));
-        scene.agents = vec![person(Vector::zeros(), vector(9.0, 0.0))];
-        time_step(&scene).unwrap()
-    };
-    for term in Term::all() {
+    for &term in Term::ALL {
         let mut found = 0;
         for parameters in stiff(term) {
             for name in NAMES {
@@ -152,7 +181,7 @@ fn every_stiff_force_shortens_the_automatic_step() {
 #[test]
 fn every_term_that_a_profile_has_acts_in_a_crowd_at_a_wall() {
     let plain = [Parameters::default()];
-    for term in Term::all() {
+    for &term in Term::ALL {
         for parameters in stiff(term).iter().chain(&plain) {
             for name in NAMES {
                 let blend = blend_with(name, parameters);

@@ -3,7 +3,8 @@
 use crate::common::walking::{LOOKING, anticipating, crowd, walking, with};
 use crate::common::{blend_with, evaluated, person, run, scene, state, vector, walker};
 use sandbox::engine::agents::NewAgent;
-use sandbox::engine::forces::walking::{DensityAhead, Drag, Headway};
+use sandbox::engine::forces::drag::Drag;
+use sandbox::engine::forces::walking::{DensityAhead, Headway};
 use sandbox::engine::math::{Vector, direction, perpendicular};
 use sandbox::engine::pairs::Precision;
 use sandbox::engine::profile::Override;

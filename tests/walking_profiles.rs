@@ -8,6 +8,7 @@ use crate::common::{
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
+use sandbox::engine::profile::Term;
 use sandbox::engine::profile::{Blend, BlendStep};
 use sandbox::engine::scene::Group;
 use sandbox::engine::simulation::Simulation;
@@ -27,7 +28,7 @@ fn the_law_adds_to_the_goal_force_what_lowers_its_speed() {
     let simulation = evaluated(crowd(WalkingLawKind::Headway, 2));
     for id in 0..300 {
         let breakdown = breakdown(&simulation, id);
-        let terms = breakdown.profiles[0].accelerations;
+        let terms = breakdown.profiles[0].accelerations.clone();
         let i = simulation.frame().agents.index_of(id).unwrap();
         let frame = simulation.frame();
         let wish = frame.fields.preferred_velocity[i]
@@ -38,7 +39,7 @@ fn the_law_adds_to_the_goal_force_what_lowers_its_speed() {
                 .lost_velocity(&frame, i);
         let velocity = Vector::from(breakdown.velocity);
         let expected = (wish - velocity) * 2.0 / breakdown.mass;
-        let sum = terms.goal.unwrap() + terms.walking.unwrap();
+        let sum = terms.get(Term::Goal).unwrap() + terms.get(Term::Walking).unwrap();
         assert!((sum - expected).norm() < 1e-12);
         let total = Vector::from(breakdown.acceleration);
         assert!((breakdown.weighted_sum() - total).norm() < 1e-11);
@@ -79,14 +80,16 @@ fn rvo_prefers_the_lowered_speed_and_has_no_term_of_its_own() {
         scene.agents = [0.0, 0.6]
             .map(|x| walker(vector(x, 0.0), speed, goal))
             .to_vec();
-        breakdown(&evaluated(scene), 0).profiles[0].accelerations
+        breakdown(&evaluated(scene), 0).profiles[0]
+            .accelerations
+            .clone()
     };
     // Two agents at the same speed do not collide.
     let [free, lawful] = [WalkingLawKind::None, WalkingLawKind::Headway].map(terms);
-    assert!(free.rvo.unwrap().norm() < 2.0);
+    assert!(free.get(Term::Rvo).unwrap().norm() < 2.0);
     let expected = vector((0.6 - 0.3) / 0.6 - 1.4, 0.0) / 0.1;
-    assert!((lawful.rvo.unwrap() - expected).norm() < 2.0);
-    assert_eq!(lawful.walking, None);
+    assert!((lawful.get(Term::Rvo).unwrap() - expected).norm() < 2.0);
+    assert_eq!(lawful.get(Term::Walking), None);
 }
 
 #[test]

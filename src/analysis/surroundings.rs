@@ -109,7 +109,6 @@ impl<'a> Surroundings<'a> {
         Reach {
             support_radius: self.support_radius,
             contact_scale: 1.0,
-            legs: None,
         }
     }
 

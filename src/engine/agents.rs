@@ -1,9 +1,10 @@
 //! The state of the crowd: one array per quantity, sorted by cell of the neighbor grid.
 
 mod columns;
-mod legs;
+mod states;
 
 pub use columns::Spare;
+pub use states::States;
 
 use rand::Rng;
 use rayon::prelude::*;
@@ -98,12 +99,8 @@ pub struct Agents {
     /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
     /// only, otherwise empty.
     pub acceleration_before: Vec<Option<Vector>>,
-    /// y_i, the position of the legs, meters. Empty if no profile has legs.
-    pub legs: Vec<Vector>,
-    /// w_i, the velocity of the legs, m/s. As long as `legs`.
-    pub legs_velocity: Vec<Vector>,
-    /// As `acceleration_before`, of the legs.
-    pub legs_acceleration_before: Vec<Option<Vector>>,
+    /// The states that forces keep, force by force.
+    pub states: Vec<States>,
     /// The way that the agent follows, held until the next coarse frame; `None` for agents that entered since. Empty
     /// in scenes without path maps.
     pub route: Vec<Option<Route>>,
@@ -154,19 +151,23 @@ impl Agents {
     }
 
     /// The arrays that may be empty, or lack agents that entered since.
-    fn sometimes(&mut self) -> [&mut dyn Column; 16] {
-        self.parts().1
+    fn sometimes(&mut self) -> impl Iterator<Item = &mut dyn Column> {
+        let (_, sometimes, states) = self.parts();
+        sometimes.into_iter().chain(columns::of(states))
     }
 
     /// The arrays that are not empty.
     fn columns(&mut self) -> impl Iterator<Item = &mut dyn Column> {
-        let (always, sometimes) = self.parts();
-        let all = always.into_iter().chain(sometimes);
+        let (always, sometimes, states) = self.parts();
+        let all = always
+            .into_iter()
+            .chain(sometimes)
+            .chain(columns::of(states));
         all.filter(|column| column.count() > 0)
     }
 
-    /// The arrays with an entry for every agent, and the others.
-    fn parts(&mut self) -> ([&mut dyn Column; 10], [&mut dyn Column; 16]) {
+    /// The arrays with an entry for every agent, the others, and the states that forces keep.
+    fn parts(&mut self) -> ([&mut dyn Column; 10], [&mut dyn Column; 13], &mut [States]) {
         (
             [
                 &mut self.id,
@@ -185,9 +186,6 @@ impl Agents {
                 &mut self.allowed_speed,
                 &mut self.heading,
                 &mut self.acceleration_before,
-                &mut self.legs,
-                &mut self.legs_velocity,
-                &mut self.legs_acceleration_before,
                 &mut self.route,
                 &mut self.aim,
                 &mut self.plan,
@@ -198,6 +196,7 @@ impl Agents {
                 &mut self.max_speed,
                 &mut self.walks_from,
             ],
+            &mut self.states,
         )
     }
 
@@ -210,12 +209,8 @@ impl Agents {
             .iter()
             .all(|&len| len == count || len == 0)
             && self.aim.len() == self.route.len()
-            && self.legs_velocity.len() == self.legs.len()
             && self.always().iter().all(|column| column.count() == count)
-            && self
-                .sometimes()
-                .iter()
-                .all(|column| column.count() <= count)
+            && self.sometimes().all(|column| column.count() <= count)
     }
 
     /// The current index of agent `id`; `None` if it has left.
@@ -296,8 +291,8 @@ impl Agents {
         self.laps.resize(self.len(), 0);
         for (i, position) in self.position.iter_mut().enumerate() {
             let (image, passed) = period.wrapped(*position);
-            if let Some(legs) = self.legs.get_mut(i) {
-                *legs += image - *position;
+            for states in &mut self.states {
+                states.shift(i, image - *position);
             }
             *position = image;
             self.laps[i] = self.laps[i].wrapping_add(passed);
@@ -346,6 +341,13 @@ impl Agents {
     /// Where agent `i` wants to go.
     pub fn destination(&self, i: usize) -> Destination {
         destination(self.trip.get(i).and_then(Option::as_ref), self.goal[i])
+    }
+
+    /// The state that the force of this name keeps for agent `i`; `None` if it does not act on it.
+    #[inline]
+    pub fn state(&self, force: &str, i: usize) -> Option<&[f64]> {
+        let states = self.states.iter().find(|states| states.force == force)?;
+        states.of(i)
     }
 
     /// Agent `i` finds its way again.

@@ -1,13 +1,11 @@
 //! The acceleration of one agent, term by term, computed with the engine's force functions on the frozen frame.
 
 mod heading;
-mod legs;
 mod openings;
 mod text;
 mod visit;
 
 pub use heading::{HeadingChoice, HeadingSeen};
-pub use legs::LegsPart;
 pub use openings::{WayChoice, WaySeen};
 pub use visit::{Alternative, Doing, Visit, Why};
 
@@ -15,6 +13,7 @@ use serde::Serialize;
 
 use crate::boundary::WallShare;
 use crate::density::mean_density_before;
+use crate::forces::own::Force;
 use crate::forces::pressure;
 use crate::math::{Vector, direction};
 use crate::profile::Terms;
@@ -48,7 +47,7 @@ pub struct Breakdown {
     pub rest_density: f64,
     /// p_i, 1/s².
     pub pressure: f64,
-    /// a_i: the weighted sum of the terms of all profiles, plus the forces from outside this crate.
+    /// a_i: the weighted sum of the terms of all profiles, plus the forces on all agents.
     pub acceleration: [f64; 2],
     /// The active profiles with their weights.
     pub profiles: Vec<ProfileShare>,
@@ -67,10 +66,10 @@ pub struct Breakdown {
     /// The headings between which it chooses; `None` without the walking law `headings`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub choice: Option<HeadingChoice>,
-    /// Its legs; `None` if its profile has none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub legs: Option<LegsPart>,
-    /// The forces from outside this crate.
+    /// The states that forces keep for it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub states: Vec<ForceState>,
+    /// The forces on all agents that are no forces of a profile.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub own_forces: Vec<OwnForce>,
     /// Agents within the support radius, nearest first.
@@ -104,13 +103,24 @@ pub struct WayLeft {
     pub corners: Vec<[f64; 2]>,
 }
 
-/// A force from outside this crate.
+/// A force on all agents.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OwnForce {
     /// Its name.
     pub name: String,
     /// Its acceleration, m/s².
     pub acceleration: [f64; 2],
+}
+
+/// The state that a force keeps for an agent.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ForceState {
+    /// The name of the force.
+    pub force: String,
+    /// Its numbers, and what follows from them, by name; units are those of trajectories.
+    pub values: Vec<(&'static str, f64)>,
+    /// What explains them, such as the accelerations of legs, m/s².
+    pub vectors: Vec<(String, [f64; 2])>,
 }
 
 /// An SPH neighbor.
@@ -190,7 +200,7 @@ impl Breakdown {
                 .filter(|&from| frame.clock.time() < from),
             visit: Visit::of(simulation, i),
             choice: HeadingChoice::of(simulation, i),
-            legs: LegsPart::of(simulation, i),
+            states: states(simulation, i),
             own_forces: own_forces.collect(),
             neighbors,
             walls: wall_terms(simulation, i),
@@ -208,7 +218,7 @@ impl Breakdown {
         Self::of(simulation, i)
     }
 
-    /// Σ weight × term over all profiles, plus the forces from outside this crate. Equals
+    /// Σ weight × term over all profiles, plus the forces on all agents. Equals
     /// [`acceleration`](Self::acceleration) up to rounding.
     pub fn weighted_sum(&self) -> Vector {
         let own_forces = self.own_forces.iter();
@@ -248,6 +258,24 @@ fn way_left(simulation: &Simulation, i: usize) -> Option<WayLeft> {
     })
 }
 
+fn states(simulation: &Simulation, i: usize) -> Vec<ForceState> {
+    let frame = simulation.frame();
+    let agents = frame.agents;
+    let of_force = |force: &dyn Force| {
+        let values = force.values(agents.position[i], agents.state(force.name(), i)?);
+        let names = force.shown().iter().map(|shown| shown.name);
+        let vectors = force.explained(&frame, i).into_iter();
+        Some(ForceState {
+            force: force.name().to_owned(),
+            values: names.zip(values).collect(),
+            vectors: vectors
+                .map(|(name, v)| (name.to_owned(), v.into()))
+                .collect(),
+        })
+    };
+    simulation.forces(i).filter_map(of_force).collect()
+}
+
 fn wall_terms(simulation: &Simulation, i: usize) -> Vec<WallTerm> {
     let frame = simulation.frame();
     let (agents, fields) = (frame.agents, frame.fields);
@@ -273,8 +301,6 @@ fn wall_terms(simulation: &Simulation, i: usize) -> Vec<WallTerm> {
 }
 
 fn serialize_terms<S: serde::Serializer>(terms: &Terms, serializer: S) -> Result<S::Ok, S::Error> {
-    let present = terms.listed().into_iter();
-    serializer.collect_map(
-        present.filter_map(|(term, value)| Some((term.name(), <[f64; 2]>::from(value?)))),
-    )
+    let listed = terms.listed();
+    serializer.collect_map(listed.map(|(name, value)| (name, <[f64; 2]>::from(value))))
 }

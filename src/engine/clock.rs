@@ -8,6 +8,33 @@ pub const PAPER_COARSE_STEP: f64 = 0.1;
 /// The shortest Δt_fine that a scenario may have, seconds.
 pub const SHORTEST_TIME_STEP: f64 = 1e-6;
 
+/// How the state is advanced by one frame (§5).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Integrator {
+    /// v ← clamp(v + a Δt), then r ← r + v Δt with the new v.
+    #[default]
+    SemiImplicit,
+    /// r ← r + v Δt with the old v, and v ← clamp(v + a Δt).
+    ForwardEuler,
+    /// r ← r + v Δt + a Δt²/2, and v with the mean of the accelerations at both ends of the step. Forces that depend
+    /// on velocity see the prediction v + a Δt, which is also the velocity of a frame; its error is O(Δt²).
+    VelocityVerlet,
+    /// The midpoint method (second-order Runge-Kutta): evaluates all forces but RVO again half a frame later, and
+    /// takes the whole step with the velocity and acceleration found there.
+    Midpoint,
+}
+
+impl Integrator {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::SemiImplicit,
+        Self::ForwardEuler,
+        Self::VelocityVerlet,
+        Self::Midpoint,
+    ];
+}
+
 /// Counts fine frames. Times are derived from the count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {

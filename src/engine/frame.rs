@@ -28,8 +28,8 @@ pub struct Fields {
     pub preferred_velocity: Vec<Vector>,
     /// a_i, m/s² (3, 3B, 4).
     pub acceleration: Vec<Vector>,
-    /// The acceleration of the legs, m/s²; empty if no profile has legs.
-    pub legs_acceleration: Vec<Vector>,
+    /// The rates of change of the states that forces keep, per second, as [`Agents::states`] (3, 3B, 4).
+    pub state_rates: Vec<Vec<f64>>,
 }
 
 /// A quantity that is zero for agents without walls near them: in blocks of agents, only those that have some.

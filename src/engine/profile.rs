@@ -10,11 +10,12 @@ pub use blend::{Blend, BlendError, BlendStep};
 pub use terms::{Term, Terms};
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::forces::contact::{self, Contact};
 use crate::forces::goal::GoalForce;
-use crate::forces::legs::Legs;
 use crate::forces::near::{self, PairCoefficients, Wanted};
+use crate::forces::own::Force;
 use crate::forces::pressure;
 use crate::forces::rates::{Extremes, Rates};
 use crate::forces::rvo::Rvo;
@@ -40,8 +41,8 @@ pub struct Profile {
     pub viscosity: Option<Viscosity>,
     /// Step 4.
     pub contact: Contact,
-    /// The legs under the body; `None` in the paper's profiles.
-    pub legs: Option<Legs>,
+    /// Forces in addition to those of the paper; none in the paper's profiles.
+    pub forces: Vec<Arc<dyn Force>>,
 }
 
 /// Step 3: how an agent finds its way.
@@ -108,7 +109,6 @@ impl Profile {
             pressure: self.pressure,
             viscosity: self.viscosity.is_some(),
             contact: self.contact.agent_stiffness.is_some(),
-            legs: self.legs.is_some_and(|legs| legs.legs_strength != 0.0),
         }
     }
 
@@ -122,20 +122,18 @@ impl Profile {
             pressure,
             viscosity,
             contact,
-            legs,
+            forces,
         } = self;
-        let forces = [
+        let of_paper = [
             Some(navigation.rates(of)),
             walking.map(|law| law.rates(of)),
             pressure.then(|| pressure::rates(of.sph)),
             viscosity.map(|viscosity| viscosity.rates()),
             Some(contact.rates(of)),
-            legs.map(|legs| legs.rates(of)),
         ];
-        forces
-            .into_iter()
-            .flatten()
-            .fold(Rates::default(), Rates::plus)
+        let others = forces.iter().map(|force| force.rates(of));
+        let all = of_paper.into_iter().flatten().chain(others);
+        all.fold(Rates::default(), Rates::plus)
     }
 
     /// Whether this profile has `term`, given agents and walls.
@@ -144,50 +142,47 @@ impl Profile {
         let rvo = matches!(self.navigation, Navigation::Rvo(_));
         match term {
             Term::Goal => !rvo,
-            Term::Walking => self.walking.is_some_and(|law| !(rvo && law.looks_ahead())),
+            Term::Walking => self.walking.is_some() && !rvo,
             Term::SocialAgents | Term::SocialWalls => social,
             Term::Rvo => rvo,
             Term::PressureAgents | Term::PressureWalls => self.pressure,
             Term::Viscosity => self.viscosity.is_some(),
             Term::ContactAgents => self.contact.agent_stiffness.is_some(),
             Term::ContactWalls => self.contact.wall_stiffness.is_some(),
-            Term::Balance => self.legs.is_some(),
-            Term::BodyAgents | Term::BodyWalls => self.wanted().legs,
         }
     }
 
     /// Every term of this profile for agent `i` of a frozen frame.
     pub fn terms(&self, frame: &Frame, i: usize, changed: Option<&Override>) -> Terms {
         let mut terms = Terms::default();
-        self.each_term(frame, i..i + 1, changed, |place, _, term| {
-            *place(&mut terms) = Some(term);
+        self.each_term(frame, i..i + 1, changed, |term, _, value| {
+            terms.set(term, Some(value));
         });
         let mut felt = PairCoefficients::default();
         self.add_pair_coefficients(frame, i..i + 1, changed, 1.0, &mut felt);
         let [pressure, viscosity, contact] = near::accelerations_of(frame, i, &felt);
         if feels_sph(changed) {
             if self.pressure {
-                terms.pressure_agents = Some(pressure);
-                terms.pressure_walls.get_or_insert(Vector::zeros());
+                terms.set(Term::PressureAgents, Some(pressure));
+                terms.set_zero_if_none(Term::PressureWalls);
             }
-            terms.viscosity = self.viscosity.map(|_| viscosity);
+            terms.set(Term::Viscosity, self.viscosity.map(|_| viscosity));
         }
         if let Some(social) = self.navigation.social() {
-            terms.social_agents = Some(social.from_agents(frame, i));
+            terms.set(Term::SocialAgents, Some(social.from_agents(frame, i)));
         }
         if feels_contact(changed) {
-            terms.contact_agents = self.contact.agent_stiffness.map(|_| contact);
+            let stiffness = self.contact.agent_stiffness;
+            terms.set(Term::ContactAgents, stiffness.map(|_| contact));
             if self.contact.wall_stiffness.is_some() {
-                terms.contact_walls.get_or_insert(Vector::zeros());
+                terms.set_zero_if_none(Term::ContactWalls);
             }
         }
-        if let Some(legs) = self.legs {
-            terms.balance = Some(legs.balance(frame, i).body);
-            if self.wanted().legs {
-                let near = frame.neighbors.near_walls(i);
-                terms.body_agents = Some(near::repulsion_of(frame, i).body);
-                terms.body_walls = Some(legs.from_walls(frame, i, near).body);
-            }
+        for force in &self.forces {
+            let named = force.terms(frame, i).into_iter();
+            terms
+                .own
+                .extend(named.map(|(name, value)| (name.to_owned(), value)));
         }
         terms
     }
@@ -222,62 +217,54 @@ impl Profile {
         }
     }
 
-    /// Passes `take` all terms of `agents` that do not depend on other agents: the field of [`Terms`], the agent and
-    /// the acceleration, m/s². Passes SPH and contact terms of walls only for agents near walls.
+    /// Passes `take` all terms of the paper that do not depend on other agents: the term, the agent and the
+    /// acceleration, m/s². Passes SPH and contact terms of walls only for agents near walls.
     #[inline]
     fn each_term(
         &self,
         frame: &Frame,
         agents: Range<usize>,
         changed: Option<&Override>,
-        mut take: impl FnMut(fn(&mut Terms) -> &mut Option<Vector>, usize, Vector),
+        mut take: impl FnMut(Term, usize, Vector),
     ) {
         let goal = self.navigation.goal();
         let goal = goal.map(|goal| changed_goal(goal, changed));
         if let Some(goal) = goal {
-            goal.accelerations(frame, agents.clone(), |i, a| take(|t| &mut t.goal, i, a));
+            goal.accelerations(frame, agents.clone(), |i, a| take(Term::Goal, i, a));
         }
         match self.navigation {
             Navigation::Goal(_) => {}
             Navigation::Social(_, social) => {
                 for i in agents.clone() {
-                    take(|t| &mut t.social_walls, i, social.from_walls(frame, i));
+                    take(Term::SocialWalls, i, social.from_walls(frame, i));
                 }
             }
             Navigation::Rvo(_) => {
                 for i in agents.clone() {
                     if let Some(held) = frame.agents.avoidance[i] {
-                        take(|t| &mut t.rvo, i, held);
+                        take(Term::Rvo, i, held);
                     }
                 }
             }
         }
-        match (self.walking, goal) {
-            (Some(WalkingLaw::Drag(drag)), _) => {
-                for i in agents.clone() {
-                    take(|t| &mut t.walking, i, drag.acceleration(frame, i));
-                }
+        if let (Some(law), Some(goal)) = (self.walking, goal) {
+            let rate = goal.rate();
+            let lost = law.lost_velocities(frame, agents.clone());
+            for (i, lost) in agents.clone().zip(lost) {
+                take(Term::Walking, i, lost * (rate / frame.agents.mass[i]));
             }
-            (Some(law), Some(goal)) => {
-                let rate = goal.rate();
-                let lost = law.lost_velocities(frame, agents.clone());
-                for (i, lost) in agents.clone().zip(lost) {
-                    take(|t| &mut t.walking, i, lost * (rate / frame.agents.mass[i]));
-                }
-            }
-            _ => {}
         }
         if self.pressure && feels_sph(changed) {
             for (i, _) in frame.neighbors.agents_near_walls(agents.clone()) {
                 let gradient = frame.fields.wall_gradient[i];
                 let push = pressure::from_walls(frame, i, gradient);
-                take(|t| &mut t.pressure_walls, i, push);
+                take(Term::PressureWalls, i, push);
             }
         }
         if self.contact.wall_stiffness.is_some() && feels_contact(changed) {
             for (i, near) in frame.neighbors.agents_near_walls(agents) {
                 let push = contact::from_walls(frame, i, near, &self.contact);
-                take(|t| &mut t.contact_walls, i, push);
+                take(Term::ContactWalls, i, push);
             }
         }
     }

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use crate::agents::{Agents, NewAgent};
 use crate::boundary::WallMethod;
 use crate::clock::Clock;
+pub use crate::clock::Integrator;
 use crate::entrance::{Entrance, Latecomer};
 use crate::forces::own::Force;
 use crate::forces::social::SocialForce;
@@ -25,33 +26,6 @@ use crate::ways::{Rooms, Ways};
 
 pub use needs::Needs;
 pub use region::Region;
-
-/// How the state is advanced by one frame (§5).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Integrator {
-    /// v ← clamp(v + a Δt), then r ← r + v Δt with the new v.
-    #[default]
-    SemiImplicit,
-    /// r ← r + v Δt with the old v, and v ← clamp(v + a Δt).
-    ForwardEuler,
-    /// r ← r + v Δt + a Δt²/2, and v with the mean of the accelerations at both ends of the step. Forces that depend
-    /// on velocity see the prediction v + a Δt, which is also the velocity of a frame; its error is O(Δt²).
-    VelocityVerlet,
-    /// The midpoint method (second-order Runge-Kutta): evaluates all forces but RVO again half a frame later, and
-    /// takes the whole step with the velocity and acceleration found there.
-    Midpoint,
-}
-
-impl Integrator {
-    /// All of them.
-    pub const ALL: [Self; 4] = [
-        Self::SemiImplicit,
-        Self::ForwardEuler,
-        Self::VelocityVerlet,
-        Self::Midpoint,
-    ];
-}
 
 /// How agents choose between ways.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -282,6 +256,12 @@ impl Scene {
         steps.map(|step| &step.profile)
     }
 
+    /// The forces of all profiles in addition to those of the paper, and those on all agents.
+    pub fn all_forces(&self) -> impl Iterator<Item = &dyn Force> {
+        let of_profiles = self.profiles().flat_map(|profile| &profile.forces);
+        of_profiles.chain(&self.own_forces).map(AsRef::as_ref)
+    }
+
     /// The speed at which agent `i` wants to walk at `time` seconds, m/s.
     pub fn pace(&self, agents: &Agents, i: usize, time: f64) -> f64 {
         if agents.walks_from.get(i).is_some_and(|&from| time < from) {
@@ -317,10 +297,9 @@ impl Scene {
         different((self.profiles()).filter_map(|profile| profile.navigation.social()))
     }
 
-    /// The distinct walking laws of all profiles that look ahead.
+    /// The distinct walking laws of all profiles.
     pub fn walking_laws(&self) -> Vec<WalkingLaw> {
-        let laws = self.profiles().filter_map(|profile| profile.walking);
-        different(laws.filter(WalkingLaw::looks_ahead))
+        different(self.profiles().filter_map(|profile| profile.walking))
     }
 
     /// How much agent `i` hurries at `time` seconds, from 0 to 1.
@@ -340,14 +319,11 @@ impl Scene {
 
     /// The ranges of the neighbor search for these agents.
     pub fn ranges(&self, needs: &Needs, agents: &Agents) -> Ranges {
-        let support = self
+        let radii = self
             .groups
             .iter()
-            .flat_map(|group| {
-                let legs = group.blend.legs().map(|legs| legs.range());
-                legs.into_iter().chain([group.blend.sph.support_radius])
-            })
-            .fold(0.0, f64::max);
+            .map(|group| group.blend.sph.support_radius);
+        let support = radii.fold(needs.reach, f64::max);
         let longest_step = self.highest_speed(agents) * self.clock.time_step();
         let ahead = match self.integrator {
             Integrator::Midpoint => 0.5 * longest_step, // forces are also evaluated half a step ahead

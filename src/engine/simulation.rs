@@ -11,7 +11,6 @@ mod evaluate;
 mod expected;
 mod goals;
 mod integrate;
-mod legs;
 mod limited;
 mod loads;
 mod passing;
@@ -23,6 +22,7 @@ mod schemes;
 mod situation;
 mod stages;
 mod state;
+mod states;
 mod stream;
 mod times;
 mod trips;
@@ -48,6 +48,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::agents::Agents;
 use crate::clock::Clock;
+use crate::forces::own::Force;
 use crate::forces::social::SocialForce;
 use crate::forces::walking::WalkingLaw;
 use crate::frame::{Fields, Frame};
@@ -224,6 +225,7 @@ impl Simulation {
             changed: true,
             decided: false,
         };
+        crowd.agents.states = fixed.no_states();
         for agent in scene.agents {
             crowd.enter(&fixed.scene, agent)?;
         }
@@ -346,6 +348,11 @@ impl Simulation {
     /// The blend of agent `i`.
     pub fn blend(&self, i: usize) -> &Blend {
         self.fixed.blend(&self.crowd.agents, i)
+    }
+
+    /// The forces on agent `i` in addition to those of the paper.
+    pub fn forces(&self, i: usize) -> impl Iterator<Item = &dyn Force> {
+        self.fixed.forces(&self.crowd.agents, i)
     }
 
     /// The change by a current push for agent `i`, if any.

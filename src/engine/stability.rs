@@ -28,10 +28,11 @@
 //! the repulsion is steepest, to the stiffness of contact and of corners, and the larger of their rates to all
 //! friction. No step is longer than the paper's Δt_coarse.
 //!
-//! Every force returns its own [`Rates`]; those from outside the crate add their stiffness and friction to all modes.
+//! Every force returns its own [`Rates`]; those on all agents add theirs to those of the profiles.
 
 use crate::agents::{Agents, RADIUS_RANGE, REFERENCE_RADIUS};
 use crate::clock::PAPER_COARSE_STEP;
+use crate::density::SphParameters;
 use crate::forces::goal::GoalForce;
 use crate::forces::rates::{Extremes, Rates};
 use crate::scene::{Integrator, Scene};
@@ -114,7 +115,7 @@ const PRESSED_DRAG: f64 = 0.25;
 const BOTH_ENDS: f64 = 2.0;
 
 impl Rates {
-    /// The largest rates over all profiles of a scene, for its smallest mass, with those of forces from outside.
+    /// The largest rates over all profiles of a scene, for its smallest mass, with those of forces on all agents.
     pub fn of(scene: &Scene) -> Self {
         let (mass, speed) = (lightest(scene), fastest(scene));
         let profiles = scene.groups.iter().flat_map(|group| {
@@ -132,11 +133,10 @@ impl Rates {
         rates.correction = rates
             .correction
             .max(strongest / shortest_relaxation(scene) / mass);
-        for force in &scene.own_forces {
-            rates.everywhere += force.stiffness();
-            rates.friction += force.friction();
-        }
-        rates
+        let sph = &SphParameters::default();
+        let extremes = Extremes { mass, speed, sph };
+        let own = scene.own_forces.iter().map(|force| force.rates(&extremes));
+        own.fold(rates, Self::plus)
     }
 
     /// The step by the formula, without margin, seconds.

@@ -4,6 +4,7 @@ use rand::Rng;
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::forces::walking::Headway;
 use sandbox::engine::math::Vector;
+use sandbox::engine::profile::Term;
 use sandbox::engine::random::{Purpose, stream};
 use sandbox::engine::scene::Scene;
 use sandbox::engine::simulation::Simulation;
@@ -55,6 +56,8 @@ pub fn crowd(law: WalkingLawKind, seed: u64) -> Scene {
 }
 
 pub fn walking(simulation: &Simulation, id: u32) -> Vector {
-    let terms = breakdown(simulation, id).profiles[0].accelerations;
-    terms.walking.unwrap()
+    let terms = breakdown(simulation, id).profiles[0].accelerations.clone();
+    let drag = terms.own.iter().find(|(name, _)| name == "drag");
+    let drag = drag.map(|(_, acceleration)| *acceleration);
+    terms.get(Term::Walking).or(drag).unwrap()
 }

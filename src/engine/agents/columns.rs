@@ -33,6 +33,11 @@ pub fn arrange<'a>(
         .for_each(|(column, spare)| column.arrange(order, spare));
 }
 
+/// Arrays of one type.
+pub fn of<T: Column>(arrays: &mut [T]) -> impl Iterator<Item = &mut dyn Column> {
+    arrays.iter_mut().map(|array| array as &mut dyn Column)
+}
+
 /// An array with one entry per agent.
 pub trait Column: Send {
     /// The number of its entries.

@@ -34,7 +34,7 @@ impl Display for Breakdown {
         self.write_visit(f)?;
         self.write_choice(f)?;
         self.write_accelerations(f)?;
-        self.write_legs(f)?;
+        self.write_states(f)?;
         for wall in &self.walls {
             writeln!(
                 f,
@@ -191,26 +191,14 @@ impl Breakdown {
         Ok(())
     }
 
-    fn write_legs(&self, f: &mut Formatter) -> fmt::Result {
-        let Some(legs) = &self.legs else {
-            return Ok(());
-        };
-        writeln!(
-            f,
-            "  legs: position {} m, velocity {} m/s, lean {:.4} of {} m; accelerations, m/s²",
-            vector(legs.position),
-            vector(legs.velocity),
-            legs.lean,
-            legs.lean_limit
-        )?;
-        let terms = [
-            ("balance", legs.balance),
-            ("legs_agents", legs.agents),
-            ("legs_walls", legs.walls),
-            ("total", legs.acceleration),
-        ];
-        for (name, value) in terms {
-            writeln!(f, "    {name:<18} {}", vector(value))?;
+    fn write_states(&self, f: &mut Formatter) -> fmt::Result {
+        for state in &self.states {
+            let value = |(name, value): &(&str, f64)| format!("{name} {value:.4}");
+            let values: Vec<String> = state.values.iter().map(value).collect();
+            writeln!(f, "  state of `{}`: {}", state.force, values.join(", "))?;
+            for (name, value) in &state.vectors {
+                writeln!(f, "    {name:<18} {}", vector(*value))?;
+            }
         }
         Ok(())
     }
@@ -219,10 +207,8 @@ impl Breakdown {
         for share in &self.profiles {
             let (name, weight) = (&share.name, share.weight);
             writeln!(f, "  {name} × {weight:.4}: accelerations, m/s²")?;
-            for (term, value) in share.accelerations.listed() {
-                if let Some(value) = value {
-                    writeln!(f, "    {:<18} {}", term.name(), vector(value.into()))?;
-                }
+            for (name, value) in share.accelerations.listed() {
+                writeln!(f, "    {name:<18} {}", vector(value.into()))?;
             }
         }
         for force in &self.own_forces {

@@ -16,19 +16,24 @@
 //! People (and walls) are near each other if their bodies are. (4) The lean has a limit, at which the body pulls the
 //! legs along. The pull does not act on the body. (5) No leg is behind a wall that its body is in front of.
 //!
+//! The state of an agent is y_i and w_i. With velocity Verlet the legs move to first order only.
+//!
 //! For points 2 and 4 the program JuPedSim has other rules (pull request 1613): a driving force on bodies alone, and
 //! legs that are put back under a body which leans too far.
 
-use std::ops::Range;
+use std::any::Any;
+use std::sync::Arc;
 
 use schemars::JsonSchema;
 
-use crate::forces::rates::{Extremes, Rates};
+use super::own::{Body, Force, Kept, Step};
+use super::rates::{Extremes, Rates};
+use crate::agents::Agents;
+use crate::clock::Integrator;
 use crate::frame::Frame;
 use crate::limits::{FARTHEST, STRONGEST};
-use crate::math::{Vector, direction};
-use crate::pairs::prelude::*;
-use crate::pairs::{Bodies, Lanes, Level, Real, Repulsion, Simd, dispatch, load, splat, spread};
+use crate::math::{Vector, clamp_length, direction};
+use crate::period::Axis;
 
 /// Parameters of the law.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
@@ -79,84 +84,114 @@ impl Default for Legs {
     }
 }
 
-/// Accelerations of a body and of its legs, m/s².
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Both {
-    /// That of the body.
-    pub body: Vector,
-    /// That of the legs.
-    pub legs: Vector,
+/// The name of the force and of its state.
+pub const NAME: &str = "legs";
+
+/// y_i and w_i.
+const STATE: [Kept; 4] = [
+    kept("legs_x", "position of the legs, m", Some(Axis::X)),
+    kept("legs_y", "position of the legs, m", Some(Axis::Y)),
+    kept("legs_vel_x", "velocity of the legs, m/s", None),
+    kept("legs_vel_y", "velocity of the legs, m/s", None),
+];
+
+/// The state, and |ℓ_i|.
+const SHOWN: [Kept; 5] = [
+    STATE[0],
+    STATE[1],
+    STATE[2],
+    STATE[3],
+    kept("lean", "distance from the legs to the body, m", None),
+];
+
+const fn kept(name: &'static str, about: &'static str, along: Option<Axis>) -> Kept {
+    Kept { name, about, along }
+}
+
+/// The position of the legs of agent `i`, meters; `None` if it has none.
+pub fn position(agents: &Agents, i: usize) -> Option<Vector> {
+    Some(parts(agents.state(NAME, i)?)[0])
+}
+
+/// The velocity of the legs of agent `i`, m/s; `None` if it has none.
+pub fn velocity(agents: &Agents, i: usize) -> Option<Vector> {
+    Some(parts(agents.state(NAME, i)?)[1])
+}
+
+/// ℓ_i, from the legs to the body, meters; zero without legs.
+pub fn lean(agents: &Agents, i: usize) -> Vector {
+    position(agents, i).map_or(Vector::zeros(), |legs| agents.position[i] - legs)
+}
+
+/// y and w of a state, or their rates.
+fn parts(state: &[f64]) -> [Vector; 2] {
+    [0, 2].map(|k| Vector::new(state[k], state[k + 1]))
+}
+
+fn set(state: &mut [f64], position: Vector, velocity: Vector) {
+    state.copy_from_slice(&[position.x, position.y, velocity.x, velocity.y]);
+}
+
+/// Of a person, the body or the legs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Half {
+    Body,
+    Legs,
 }
 
 impl Legs {
-    /// The friction of falling, and the repulsion where it is steepest.
-    pub fn rates(&self, of: &Extremes) -> Rates {
-        let shortest = self.body_range.min(self.leg_range);
-        Rates {
-            contact: self.legs_strength / shortest / of.mass,
-            corner: self.legs_strength / shortest / of.mass,
-            friction: self.unbalancing_rate.max(self.balancing_rate),
-            ..Rates::default()
+    /// The law among the forces of a profile.
+    pub fn among(forces: &[Arc<dyn Force>]) -> Option<&Self> {
+        let mut all = forces.iter().map(|force| force.as_ref() as &dyn Any);
+        all.find_map(<dyn Any>::downcast_ref)
+    }
+
+    /// Falling, or balance: the acceleration of the body or of the legs of agent `i`, m/s².
+    fn balance(&self, frame: &Frame, i: usize, half: Half) -> Vector {
+        let agents = frame.agents;
+        let (r, v) = (agents.position[i], agents.velocity[i]);
+        let [y, w] = agents.state(NAME, i).map_or([r, v], parts);
+        let lean = r - y;
+        let e = lean / lean.norm().max(f64::MIN_POSITIVE);
+        let aim = e * self.balance_speed + walk(v, frame.fields.preferred_velocity[i]);
+        match half {
+            Half::Body => (aim - v) * self.unbalancing_rate,
+            Half::Legs => (aim - w) * self.balancing_rate,
         }
     }
 
-    /// The terms of falling and of balance for agent `i`.
-    pub fn balance(&self, frame: &Frame, i: usize) -> Both {
-        let (mut body, mut legs) = ([Vector::zeros()], [Vector::zeros()]);
-        self.add_balance(frame, i..i + 1, (&mut body, &mut legs));
-        Both {
-            body: body[0],
-            legs: legs[0],
+    fn range_of(&self, half: Half) -> f64 {
+        match half {
+            Half::Body => self.body_range,
+            Half::Legs => self.leg_range,
         }
     }
 
-    /// Adds the terms of falling and of balance of `agents` to the accelerations of their bodies and legs.
-    pub fn add_balance(
-        &self,
-        frame: &Frame,
-        agents: Range<usize>,
-        (bodies, legs): (&mut [Vector], &mut [Vector]),
-    ) {
-        let all = frame.agents;
-        let positions = [&all.position, &all.legs].map(|column| &column[agents.clone()]);
-        let velocities = [&all.velocity, &all.legs_velocity].map(|column| &column[agents.clone()]);
-        let wishes = &frame.fields.preferred_velocity[agents];
-        dispatch!(Level::new(), _simd => {
-            self.balance_all(positions, velocities, wishes, [bodies, legs]);
-        });
+    /// A f(|d|, B) in the direction d, m/s², for people of mass 1.
+    fn push(&self, d: Vector, range: f64) -> Vector {
+        let [here, there] = [d.norm(), self.legs_reach].map(|d| (-d / range).exp());
+        direction(d) * (self.legs_strength * (here - there).max(0.0))
     }
 
-    #[inline(always)]
-    fn balance_all(
-        &self,
-        positions: [&[Vector]; 2],
-        velocities: [&[Vector]; 2],
-        wishes: &[Vector],
-        [bodies, legs]: [&mut [Vector]; 2],
-    ) {
-        let positions = positions[0].iter().zip(positions[1]);
-        let velocities = velocities[0].iter().zip(velocities[1]);
-        let states = positions.zip(velocities).zip(wishes);
-        for ((body, legs), (((r, y), (v, w)), &wish)) in bodies.iter_mut().zip(legs).zip(states) {
-            let lean = r - y;
-            let e = lean / lean.norm().max(f64::MIN_POSITIVE);
-            let aim = e * self.balance_speed + walk(*v, wish);
-            *body += (aim - v) * self.unbalancing_rate;
-            *legs += (aim - w) * self.balancing_rate;
-        }
-    }
-
-    /// The repulsion by the walls `near` agent `i`.
-    pub fn from_walls(&self, frame: &Frame, i: usize, near: &[u32]) -> Both {
-        let (agents, walls) = (frame.agents, frame.walls);
-        let (body, legs) = (agents.position[i], agents.legs[i]);
-        let strength = self.legs_strength / agents.mass[i];
-        let push = |away: Vector, range: f64| {
-            let [here, there] = [away.norm(), self.legs_reach].map(|d| (-d / range).exp());
-            direction(away) * (strength * (here - there).max(0.0))
+    /// The repulsion by other agents, m/s².
+    fn from_agents(&self, frame: &Frame, i: usize, half: Half) -> Vector {
+        let agents = frame.agents;
+        let lean = |k: usize| match half {
+            Half::Body => Vector::zeros(),
+            Half::Legs => lean(agents, k),
         };
-        let mut both = Both::default();
-        for k in near {
+        let (own, range) = (lean(i), self.range_of(half));
+        let pushes = (frame.near(i, self.legs_reach))
+            .map(|(j, r_ij)| self.push(r_ij - (own - lean(j)), range));
+        pushes.sum::<Vector>() / agents.mass[i]
+    }
+
+    /// The repulsion by walls, m/s². Walls act on legs if they are near the body.
+    fn from_walls(&self, frame: &Frame, i: usize, half: Half) -> Vector {
+        let (agents, walls) = (frame.agents, frame.walls);
+        let body = agents.position[i];
+        let mut sum = Vector::zeros();
+        for k in frame.neighbors.near_walls(i) {
             let wall = walls.wall(*k);
             if wall.is_beyond(body, self.legs_reach) {
                 continue;
@@ -167,127 +202,143 @@ impl Legs {
             if away.norm() >= self.legs_reach {
                 continue;
             }
-            both.body += ahead.map_or(Vector::zeros(), |away| push(away, self.body_range));
-            if let Some((_, away)) = facing(legs) {
-                both.legs += push(away, self.leg_range);
-            }
+            let away = match half {
+                Half::Body => ahead,
+                Half::Legs => facing(body - lean(agents, i)).map(|(_, away)| away),
+            };
+            sum += away.map_or(Vector::zeros(), |away| self.push(away, self.range_of(half)));
         }
-        both
+        sum / agents.mass[i]
     }
 
-    /// The distance, meters, up to which the law needs agents and walls: without repulsion only the walls between a
-    /// body and its legs.
-    pub fn range(&self) -> f64 {
+    /// The accelerations by balance, by other agents and by walls, m/s².
+    fn accelerations(&self, frame: &Frame, i: usize, half: Half) -> [Vector; 3] {
+        let balance = self.balance(frame, i, half);
+        if self.legs_strength == 0.0 {
+            return [balance, Vector::zeros(), Vector::zeros()];
+        }
+        let [agents, walls] =
+            [Self::from_agents, Self::from_walls].map(|from| from(self, frame, i, half));
+        [balance, agents, walls]
+    }
+}
+
+impl Force for Legs {
+    fn name(&self) -> &str {
+        NAME
+    }
+
+    /// Without repulsion only the walls between a body and its legs are needed.
+    fn reach(&self) -> f64 {
         match self.legs_strength {
             0.0 => self.lean_limit,
             _ => self.legs_reach.max(self.lean_limit),
         }
     }
 
-    /// The repulsion by other agents.
-    pub fn repulsion(&self) -> Repulsion {
-        Repulsion {
-            strength: self.legs_strength,
-            reach: self.legs_reach,
-            body_range: self.body_range,
-            leg_range: self.leg_range,
+    /// The friction of falling, and the repulsion where it is steepest.
+    fn rates(&self, of: &Extremes) -> Rates {
+        let shortest = self.body_range.min(self.leg_range);
+        Rates {
+            contact: self.legs_strength / shortest / of.mass,
+            corner: self.legs_strength / shortest / of.mass,
+            friction: self.unbalancing_rate.max(self.balancing_rate),
+            ..Rates::default()
         }
+    }
+
+    fn acceleration(&self, frame: &Frame, i: usize) -> Vector {
+        self.accelerations(frame, i, Half::Body).iter().sum()
+    }
+
+    fn terms(&self, frame: &Frame, i: usize) -> Vec<(&str, Vector)> {
+        let names = ["balance", "body_agents", "body_walls"].into_iter();
+        let terms = names.zip(self.accelerations(frame, i, Half::Body));
+        let count = if self.legs_strength == 0.0 { 1 } else { 3 };
+        terms.take(count).collect()
+    }
+
+    fn kept(&self) -> &[Kept] {
+        &STATE
+    }
+
+    /// Agents enter upright: the legs of those that walk are as fast as the body, and those of agents that still wait
+    /// are at rest.
+    fn begin(&self, agents: &Agents, i: usize, time: f64, state: &mut [f64]) {
+        let waits = agents.walks_from.get(i).is_some_and(|&from| time < from);
+        let velocity = if waits {
+            Vector::zeros()
+        } else {
+            agents.velocity[i]
+        };
+        set(state, agents.position[i], velocity);
+    }
+
+    fn change(&self, frame: &Frame, i: usize, rates: &mut [f64]) {
+        let acceleration = self.accelerations(frame, i, Half::Legs).iter().sum();
+        set(
+            rates,
+            velocity(frame.agents, i).unwrap_or_default(),
+            acceleration,
+        );
+    }
+
+    fn advance(&self, step: &Step, rates: &[f64], state: &mut [f64]) {
+        let [mut y, w] = parts(state);
+        let [w_of_frame, a] = parts(rates);
+        let velocity = w + a * step.time;
+        let way = match step.integrator {
+            Integrator::SemiImplicit => velocity,
+            Integrator::ForwardEuler | Integrator::Midpoint => w_of_frame,
+            Integrator::VelocityVerlet => w + a * (0.5 * step.time),
+        };
+        y += clamp_length(way, step.max_speed) * step.time;
+        set(state, y, clamp_length(velocity, step.max_speed));
+    }
+
+    /// The body pulls the legs along at the limit of the lean. Walls between a body and its legs stop the legs.
+    fn fit(&self, body: &Body, state: &mut [f64]) {
+        let [mut y, mut w] = parts(state);
+        let lean = body.position - y;
+        if lean.norm_squared() > self.lean_limit * self.lean_limit {
+            let e = direction(lean);
+            y = body.position - e * self.lean_limit;
+            w += e * (body.velocity - w).dot(&e).max(0.0);
+        }
+        if let Some((point, wall)) = body.walls.stop(body.position, y, body.near_walls) {
+            let normal = body.walls.wall(wall).normal;
+            y = point;
+            w -= normal * w.dot(&normal).min(0.0);
+        }
+        set(state, y, w);
+    }
+
+    fn shown(&self) -> &[Kept] {
+        &SHOWN
+    }
+
+    fn values(&self, position: Vector, state: &[f64]) -> Vec<f64> {
+        let lean = (position - parts(state)[0]).norm();
+        state.iter().copied().chain([lean]).collect()
+    }
+
+    fn explained(&self, frame: &Frame, i: usize) -> Vec<(&str, Vector)> {
+        let [balance, agents, walls] = self.accelerations(frame, i, Half::Legs);
+        vec![
+            ("legs_balance", balance),
+            ("legs_agents", agents),
+            ("legs_walls", walls),
+            ("legs_total", balance + agents + walls),
+        ]
+    }
+
+    fn equals(&self, other: &dyn Force) -> bool {
+        (other as &dyn Any).downcast_ref() == Some(self)
     }
 }
 
 /// s: the part of a velocity along the preferred one, between zero and that, m/s.
-#[inline(always)]
 fn walk(velocity: Vector, wish: Vector) -> Vector {
     let squared = wish.norm_squared().max(f64::MIN_POSITIVE);
     wish * (velocity.dot(&wish) / squared).clamp(0.0, 1.0)
-}
-
-/// The leans of a run of agents, coordinate units.
-#[derive(Clone, Copy, Default)]
-pub struct Leans<'a, R> {
-    x: &'a [R],
-    y: &'a [R],
-}
-
-impl<'a, R: Real> Leans<'a, R> {
-    /// The leans of the agents `run`.
-    #[inline(always)]
-    pub fn of(bodies: &'a Bodies<R>, run: Range<usize>) -> Self {
-        Self {
-            x: &bodies.legs.lean_x[run.clone()],
-            y: &bodies.legs.lean_y[run],
-        }
-    }
-}
-
-/// The repulsion of bodies and of legs for eight agents i, times A/m_i.
-pub struct FromAgents<R: Real, S: Simd> {
-    strength: Lanes<R, S>,
-    lean: [Lanes<R, S>; 2],
-    /// R², coordinate units².
-    reach_squared: Lanes<R, S>,
-    /// −1/(B ln 2) and −1/(B_l ln 2), per coordinate unit.
-    rates: [Lanes<R, S>; 2],
-    /// e^(−R/B) and e^(−R/B_l)
-    at_reach: [Lanes<R, S>; 2],
-    /// Σ_j f(|y_i − y_j|, B_l) n'_ij
-    sum: [Lanes<R, S>; 2],
-}
-
-impl<R: Real, S: Simd> FromAgents<R, S> {
-    /// The sum for the agents from `start` on.
-    #[inline(always)]
-    pub fn new(simd: S, bodies: &Bodies<R>, start: usize) -> Self {
-        let legs = &bodies.legs;
-        let reach = load(simd, &legs.reach, start);
-        let body_rate = load(simd, &legs.body_rate, start);
-        let legs_rate = load(simd, &legs.legs_rate, start);
-        Self {
-            strength: load(simd, &legs.strength, start),
-            lean: [
-                load(simd, &legs.lean_x, start),
-                load(simd, &legs.lean_y, start),
-            ],
-            reach_squared: reach * reach,
-            rates: [body_rate, legs_rate],
-            at_reach: R::exp2_of_both(simd, [body_rate * reach, legs_rate * reach]),
-            sum: [splat::<R, S>(simd, 0.0); 2],
-        }
-    }
-
-    /// Adds agent j, at r_ij = r_i − r_j and this distance, coordinate units, with its lean. Returns `others` plus the
-    /// force on bodies along r_ij.
-    #[inline(always)]
-    pub fn added_to(
-        &mut self,
-        simd: S,
-        others: Lanes<R, S>,
-        ([dx, dy], distance): ([Lanes<R, S>; 2], Lanes<R, S>),
-        (leans, j): (Leans<R>, usize),
-    ) -> Lanes<R, S> {
-        let acts = dy.mul_add(dy, dx * dx).simd_lt(self.reach_squared);
-        if acts.all_false() {
-            return others;
-        }
-        let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
-        let x = dx - (self.lean[0] - spread(simd, leans.x[j]));
-        let y = dy - (self.lean[1] - spread(simd, leans.y[j]));
-        let squared = y.mul_add(y, x * x);
-        let between = squared.max(splat::<R, S>(simd, R::TINY)).sqrt();
-        // The division does not wait for the exponentials.
-        let inverse = one / between;
-        let distances = [distance * self.rates[0], between * self.rates[1]];
-        let [body, legs] = R::exp2_of_both(simd, distances);
-        let legs = acts.select((legs - self.at_reach[1]).max(zero), zero) * inverse;
-        self.sum[0] = legs.mul_add(x, self.sum[0]);
-        self.sum[1] = legs.mul_add(y, self.sum[1]);
-        let body = (body - self.at_reach[0]).max(zero);
-        self.strength.mul_add(body, others)
-    }
-
-    /// The accelerations of the legs, m/s².
-    #[inline(always)]
-    pub fn of_legs(&self) -> [Lanes<R, S>; 2] {
-        [self.sum[0] * self.strength, self.sum[1] * self.strength]
-    }
 }

@@ -5,6 +5,7 @@
 //! [`near`] sums pressure, viscosity and contact in one pass.
 
 pub mod contact;
+pub mod drag;
 pub mod goal;
 pub mod legs;
 pub mod near;

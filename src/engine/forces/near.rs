@@ -1,9 +1,8 @@
-//! The forces between near agents, summed in one pass over the pairs: pressure, viscosity, contact and legs. Each
-//! force's equation is in its own file.
+//! The forces between near agents, summed in one pass over the pairs: pressure, viscosity, and contact. Each force's
+//! equation is in its own file.
 
 use std::ops::Range;
 
-use crate::forces::legs::{self, Both, Leans};
 use crate::forces::{contact, pressure, viscosity};
 use crate::frame::Frame;
 use crate::math::Vector;
@@ -45,29 +44,19 @@ pub struct Wanted {
     pub viscosity: bool,
     /// Eq. 22.
     pub contact: bool,
-    /// The repulsion of bodies and of legs.
-    pub legs: bool,
 }
 
 impl Wanted {
-    /// All sums of the paper.
-    pub const PAPER: Self = Self {
+    /// All sums.
+    pub const ALL: Self = Self {
         pressure: true,
         viscosity: true,
         contact: true,
-        legs: false,
-    };
-    /// The repulsion of bodies and of legs.
-    const LEGS: Self = Self {
-        pressure: false,
-        viscosity: false,
-        contact: false,
-        legs: true,
     };
 
     /// Whether any sum is wanted.
     pub fn any(self) -> bool {
-        self.pressure || self.viscosity || self.contact || self.legs
+        self.pressure || self.viscosity || self.contact
     }
 
     /// The sums that `self` or `other` contains.
@@ -76,34 +65,28 @@ impl Wanted {
             pressure: self.pressure || other.pressure,
             viscosity: self.viscosity || other.viscosity,
             contact: self.contact || other.contact,
-            legs: self.legs || other.legs,
         }
     }
 }
 
-/// Accelerations of the agents of block `b` and, if `wanted`, of their legs, from their near neighbors, m/s². Forces of
-/// the paper that are not wanted must have coefficient 0: they may be skipped.
+/// Accelerations of the agents of block `b` from their near neighbors, m/s². Forces that are not wanted must have
+/// coefficient 0: they may be skipped.
 pub fn accelerations(
     frame: &Frame,
     b: usize,
     coefficients: &PairCoefficients,
     wanted: Wanted,
-    (bodies, legs): (&mut [Vector], &mut [Vector]),
+    out: &mut [Vector],
 ) {
     let block = frame.neighbors.near().block(b);
     let sph = wanted.pressure || wanted.viscosity;
-    if !wanted.legs {
-        legs.fill(Vector::zeros());
-    }
     each!(frame.packed, columns => dispatch!(Level::new(), simd => {
         let input = (columns, block, coefficients);
-        match (sph, wanted.viscosity, wanted.contact, wanted.legs) {
-            (false, _, false, false) => bodies.fill(Vector::zeros()),
-            (false, _, true, false) => sums::<_, _, false, false, false>(simd, input, (bodies, legs)),
-            (true, false, _, false) => sums::<_, _, true, false, false>(simd, input, (bodies, legs)),
-            (true, true, _, false) => sums::<_, _, true, true, false>(simd, input, (bodies, legs)),
-            (false, _, _, true) => sums::<_, _, false, false, true>(simd, input, (bodies, legs)),
-            (true, _, _, true) => sums::<_, _, true, true, true>(simd, input, (bodies, legs)),
+        match (sph, wanted.viscosity, wanted.contact) {
+            (false, _, false) => out.fill(Vector::zeros()),
+            (false, _, true) => sums::<_, _, false, false>(simd, input, out),
+            (true, false, _) => sums::<_, _, true, false>(simd, input, out),
+            (true, true, _) => sums::<_, _, true, true>(simd, input, out),
         }
     }));
 }
@@ -126,76 +109,46 @@ pub fn accelerations_of(frame: &Frame, i: usize, coefficients: &PairCoefficients
     ];
     each.map(|coefficients| {
         let mut out = [Vector::zeros(); BLOCK];
-        let both = (&mut out[..], &mut [][..]);
-        accelerations(frame, i / BLOCK, &coefficients, Wanted::PAPER, both);
+        accelerations(frame, i / BLOCK, &coefficients, Wanted::ALL, &mut out);
         out[i % BLOCK]
     })
 }
 
-/// The repulsion of agent `i` and of its legs by near neighbors, m/s².
-pub fn repulsion_of(frame: &Frame, i: usize) -> Both {
-    let (mut bodies, mut legs) = ([Vector::zeros(); BLOCK], [Vector::zeros(); BLOCK]);
-    let none = PairCoefficients::default();
-    let out = (&mut bodies[..], &mut legs[..]);
-    accelerations(frame, i / BLOCK, &none, Wanted::LEGS, out);
-    Both {
-        body: bodies[i % BLOCK],
-        legs: legs[i % BLOCK],
-    }
-}
-
 #[inline(always)]
-fn sums<R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool, const LEGS: bool>(
+fn sums<R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool>(
     simd: S,
     (columns, block, felt): (&Columns<R>, &ClusterBlock, &PairCoefficients),
-    (out, legs): (&mut [Vector], &mut [Vector]),
+    out: &mut [Vector],
 ) {
     for (agents, runs) in block.clusters() {
         let start = agents.start;
         let own = start % BLOCK;
-        let mut sum = NearSum::<R, S, PRESSURE, VISCOSITY, LEGS> {
+        let mut sum = NearSum::<R, S, PRESSURE, VISCOSITY> {
             columns,
             minus_unit_per_h: splat::<R, S>(simd, -columns.bodies.unit)
                 * load(simd, &columns.bodies.per_support, start),
             pressure: pressure::FromAgents::new(simd, columns, start, &felt.pressure[own..]),
             viscosity: viscosity::FromAgents::new(simd, columns, start, &felt.viscosity[own..]),
             contact: contact::FromAgents::new(simd, columns, start, &felt.contact[own..]),
-            legs: LEGS.then(
-                #[inline(always)]
-                || legs::FromAgents::new(simd, &columns.bodies, start),
-            ),
             along: [splat::<R, S>(simd, 0.0); 2],
         };
         add_pairs(simd, &columns.bodies, (start, runs), &mut sum);
-        let own = own..own + agents.len();
-        if let Some(sum) = &sum.legs {
-            let [x, y] = sum.of_legs();
-            write::<R, S>([x, y], &mut legs[own.clone()]);
-        }
         let [x, y] = sum.viscosity.added_to(sum.along);
-        write::<R, S>([x, y], &mut out[own]);
-    }
-}
-
-#[inline(always)]
-fn write<R: Real, S: Simd>([x, y]: [Lanes<R, S>; 2], out: &mut [Vector]) {
-    let (x, y) = (store::<R, S>(x), store::<R, S>(y));
-    for (k, sum) in out.iter_mut().enumerate() {
-        *sum = Vector::new(x[k], y[k]);
+        let (x, y) = (store::<R, S>(x), store::<R, S>(y));
+        for (k, sum) in out[own..own + agents.len()].iter_mut().enumerate() {
+            *sum = Vector::new(x[k], y[k]);
+        }
     }
 }
 
 /// The forces on eight agents i. Contact is always summed.
-struct NearSum<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool, const LEGS: bool>
-{
+struct NearSum<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool> {
     columns: &'a Columns<R>,
     /// −1/h, per coordinate unit.
     minus_unit_per_h: Lanes<R, S>,
     pressure: pressure::FromAgents<R, S>,
     viscosity: viscosity::FromAgents<R, S>,
     contact: contact::FromAgents<R, S>,
-    /// Only if `LEGS`.
-    legs: Option<legs::FromAgents<R, S>>,
     /// The sum of the forces along r_ij.
     along: [Lanes<R, S>; 2],
 }
@@ -208,11 +161,10 @@ struct Run<'a, R> {
     velocity_x: &'a [R],
     velocity_y: &'a [R],
     radius: &'a [R],
-    leans: Leans<'a, R>,
 }
 
-impl<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool, const LEGS: bool>
-    PairSum<R, S> for NearSum<'a, R, S, PRESSURE, VISCOSITY, LEGS>
+impl<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool> PairSum<R, S>
+    for NearSum<'a, R, S, PRESSURE, VISCOSITY>
 {
     type Run = Run<'a, R>;
 
@@ -224,10 +176,6 @@ impl<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool, const LE
             velocity_x: &self.columns.bodies.velocity_x[run.clone()],
             velocity_y: &self.columns.bodies.velocity_y[run.clone()],
             radius: &self.columns.bodies.contact_radius[run.clone()],
-            leans: match LEGS {
-                true => Leans::of(&self.columns.bodies, run),
-                false => Leans::default(),
-            },
         }
     }
 
@@ -251,9 +199,6 @@ impl<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool, const LE
         }
         let radius_j = spread(simd, run.radius[j]);
         force = self.contact.added_to(simd, force, distance, radius_j);
-        if let Some(legs) = &mut self.legs {
-            force = legs.added_to(simd, force, ([dx, dy], distance), (run.leans, j));
-        }
         let force = force * inverse;
         self.along[0] = force.mul_add(dx, self.along[0]);
         self.along[1] = force.mul_add(dy, self.along[1]);

@@ -1,6 +1,7 @@
 //! The force from outside on the agents of a push, as it was measured.
 
 use super::own::Force;
+use super::rates::{Extremes, Rates};
 use crate::frame::Frame;
 use crate::math::Vector;
 
@@ -39,12 +40,8 @@ impl Force for PushForce {
         "push"
     }
 
-    fn stiffness(&self) -> f64 {
-        0.0
-    }
-
-    fn friction(&self) -> f64 {
-        0.0
+    fn rates(&self, _: &Extremes) -> Rates {
+        Rates::default()
     }
 
     fn acceleration(&self, frame: &Frame, i: usize) -> Vector {

@@ -1,7 +1,5 @@
 //! The agents' data that sums over pairs read, packed in columns.
 
-use std::f64::consts::LN_2;
-
 use rayon::prelude::*;
 
 use super::real::{LANES, Real};
@@ -48,25 +46,6 @@ pub struct Bodies<R: Real> {
     pub heading_x: Vec<R>,
     /// See `heading_x`.
     pub heading_y: Vec<R>,
-    /// The legs under the bodies.
-    pub legs: Legs<R>,
-}
-
-/// The legs of all agents, padded like [`Columns`]; empty if no profile has legs.
-#[derive(Debug, Clone, Default)]
-pub struct Legs<R: Real> {
-    /// The lean, coordinate units.
-    pub lean_x: Vec<R>,
-    /// See `lean_x`.
-    pub lean_y: Vec<R>,
-    /// A/m_i, m/s²; 0 for an agent without legs.
-    pub strength: Vec<R>,
-    /// R, coordinate units.
-    pub reach: Vec<R>,
-    /// −1/(B ln 2), per coordinate unit.
-    pub body_rate: Vec<R>,
-    /// −1/(B_l ln 2), per coordinate unit.
-    pub legs_rate: Vec<R>,
 }
 
 /// The reach of the forces of an agent.
@@ -76,21 +55,6 @@ pub struct Reach {
     pub support_radius: f64,
     /// The part of D_i that counts in contacts with agents.
     pub contact_scale: f64,
-    /// The repulsion of bodies and of legs.
-    pub legs: Option<Repulsion>,
-}
-
-/// The repulsion of bodies and of legs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Repulsion {
-    /// A, m/s².
-    pub strength: f64,
-    /// R, meters.
-    pub reach: f64,
-    /// B, meters.
-    pub body_range: f64,
-    /// B_l, meters.
-    pub leg_range: f64,
 }
 
 fn reset<T: Copy + Default>(column: &mut Vec<T>, agents: &Agents) {
@@ -149,9 +113,6 @@ impl<R: Real> Bodies<R> {
                 per_support[k] = R::of(1.0 / reach.support_radius);
             }
         });
-        if !agents.legs.is_empty() {
-            self.legs.take(agents, unit, reach);
-        }
     }
 
     /// Packs the directions of preferred velocities, one per agent.
@@ -187,56 +148,5 @@ impl<R: Real> Bodies<R> {
                 });
             },
         );
-    }
-}
-
-impl<R: Real> Legs<R> {
-    /// Packs the repulsion of all agents, and resets their leans to 0.
-    fn take(&mut self, agents: &Agents, unit: f64, reach: impl Fn(usize) -> Reach + Sync) {
-        reset(&mut self.lean_x, agents);
-        reset(&mut self.lean_y, agents);
-        reset(&mut self.strength, agents);
-        reset(&mut self.reach, agents);
-        reset(&mut self.body_rate, agents);
-        reset(&mut self.legs_rate, agents);
-        let columns = (
-            &mut self.strength,
-            &mut self.reach,
-            &mut self.body_rate,
-            &mut self.legs_rate,
-            &agents.mass,
-        );
-        let columns = columns
-            .into_par_iter()
-            .with_min_len(TASK * BLOCK)
-            .enumerate();
-        columns.for_each(|(i, (strength, reach_i, body_rate, legs_rate, mass))| {
-            if let Some(legs) = reach(i).legs {
-                *strength = R::of(legs.strength / mass);
-                *reach_i = R::of(legs.reach / unit);
-                *body_rate = R::of(-unit / (LN_2 * legs.body_range));
-                *legs_rate = R::of(-unit / (LN_2 * legs.leg_range));
-            }
-        });
-    }
-
-    /// Packs the leans of all agents; a coordinate unit is `unit` meters.
-    pub fn take_leans(&mut self, agents: &Agents, unit: f64) {
-        let per_meter = 1.0 / unit;
-        let blocks = (
-            self.lean_x.par_chunks_mut(BLOCK),
-            self.lean_y.par_chunks_mut(BLOCK),
-            agents.position.par_chunks(BLOCK),
-            agents.legs.par_chunks(BLOCK),
-        );
-        let blocks = blocks.into_par_iter().with_min_len(TASK);
-        blocks.for_each(|(x, y, positions, legs)| {
-            dispatch!(Level::new(), _simd => {
-                let leans = positions.iter().zip(legs).map(|(position, legs)| position - legs);
-                for ((x, y), lean) in x.iter_mut().zip(y).zip(leans) {
-                    (*x, *y) = (R::of(lean.x * per_meter), R::of(lean.y * per_meter));
-                }
-            });
-        });
     }
 }

@@ -14,7 +14,7 @@ mod real;
 mod sums;
 mod vectors;
 
-pub use columns::{Bodies, Columns, Reach, Repulsion};
+pub use columns::{Bodies, Columns, Reach};
 pub use fearless_simd::{
     Level, Simd, dispatch, f32x8, f64x8, mask32x8, mask64x8, prelude, u8x64, u32x8,
 };
@@ -111,14 +111,8 @@ impl Packed {
         each!(self, columns => columns.bodies.take_headings(wishes));
     }
 
-    /// Packs the positions, velocities and leans of all agents.
+    /// Packs the positions and velocities of all agents.
     pub fn take_motions(&mut self, agents: &Agents) {
-        each!(self, columns => {
-            let bodies = &mut columns.bodies;
-            bodies.take_motions(agents);
-            if !agents.legs.is_empty() {
-                bodies.legs.take_leans(agents, bodies.unit);
-            }
-        });
+        each!(self, columns => columns.bodies.take_motions(agents));
     }
 }

@@ -3,11 +3,12 @@
 //! Plain form: `acting` and `acceleration` in `examples/paper.rs`.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::{Navigation, Override, Profile};
 use crate::density::SphParameters;
-use crate::forces::legs::Legs;
 use crate::forces::near::PairCoefficients;
+use crate::forces::own::Force;
 use crate::forces::rvo::Rvo;
 use crate::forces::social::SocialForce;
 use crate::forces::walking::WalkingLaw;
@@ -55,17 +56,17 @@ pub enum BlendError {
         "profiles of one blend share one velocity of RVO: give them the same RVO parameters and the same walking law"
     )]
     DifferentRvo,
-    /// Two profiles have different walking laws that look ahead.
+    /// Two profiles have different walking laws.
     #[error(
         "profiles of one blend share one walking law: give those with `headway`, `density-ahead` or `headings` the \
          same parameters"
     )]
     DifferentLaws,
-    /// Two profiles have different legs, or only one has legs.
+    /// A force that keeps a state has different parameters in two profiles, or only one has it.
     #[error(
-        "profiles of one blend share the legs under a body: give all of them the same parameters of `legs`"
+        "profiles of one blend share what a force keeps for each agent: give all of them the same parameters of `{0}`"
     )]
-    DifferentLegs,
+    DifferentForces(String),
     /// Two profiles have bodies of different sizes.
     #[error("profiles of one blend share one `contact_scale`: {1} follows {0}")]
     DifferentContact(f64, f64),
@@ -76,7 +77,7 @@ impl Blend {
     ///
     /// # Errors
     /// No profile or too many, densities that do not rise, or profiles with different RVO parameters, walking laws,
-    /// contact scales or legs.
+    /// contact scales or forces that keep a state.
     pub fn new(
         name: String,
         sph: SphParameters,
@@ -97,8 +98,8 @@ impl Blend {
             if before != here {
                 return Err(BlendError::DifferentContact(before, here));
             }
-            if pair[0].profile.legs != pair[1].profile.legs {
-                return Err(BlendError::DifferentLegs);
+            if let Some(name) = different_state(&pair[0].profile, &pair[1].profile) {
+                return Err(BlendError::DifferentForces(name));
             }
         }
         let rvo = |step: &BlendStep| Some((rvo_of(&step.profile)?, step.profile.walking));
@@ -108,8 +109,7 @@ impl Blend {
         {
             return Err(BlendError::DifferentRvo);
         }
-        let laws = steps.iter().filter_map(|step| step.profile.walking);
-        let mut laws = laws.filter(WalkingLaw::looks_ahead);
+        let mut laws = steps.iter().filter_map(|step| step.profile.walking);
         if let Some(first) = laws.next()
             && laws.any(|other| other != first)
         {
@@ -145,7 +145,6 @@ impl Blend {
         Reach {
             support_radius: self.sph.support_radius,
             contact_scale: self.steps[0].profile.contact.contact_scale,
-            legs: self.legs().as_ref().map(Legs::repulsion),
         }
     }
 
@@ -154,21 +153,22 @@ impl Blend {
         self.steps.iter().find_map(|step| rvo_of(&step.profile))
     }
 
-    /// The legs under the bodies of agents with this blend.
-    pub fn legs(&self) -> Option<Legs> {
-        self.steps[0].profile.legs
+    /// The forces in addition to those of the paper of its first profile. Those that keep a state are forces of all its
+    /// profiles.
+    pub fn forces(&self) -> &[Arc<dyn Force>] {
+        &self.steps[0].profile.forces
     }
 
-    /// The walking law of the profiles that have one that looks ahead.
+    /// The walking law of the profiles that have one.
     pub fn walking_law(&self) -> Option<&WalkingLaw> {
-        let mut laws = (self.steps.iter()).filter_map(|step| step.profile.walking.as_ref());
-        laws.find(|law| law.looks_ahead())
+        let mut profiles = self.steps.iter().map(|step| &step.profile);
+        profiles.find_map(|profile| profile.walking.as_ref())
     }
 
     /// The walking law that changes the preferred velocity of RVO.
     pub fn law_of_rvo(&self) -> Option<&WalkingLaw> {
         let mut with_rvo = (self.steps.iter()).filter(|step| rvo_of(&step.profile).is_some());
-        with_rvo.find_map(|step| (step.profile.walking.as_ref()).filter(|law| law.looks_ahead()))
+        with_rvo.find_map(|step| step.profile.walking.as_ref())
     }
 
     /// The profiles that act on agent `i` of a frozen frame, with their weights, which sum to 1.
@@ -250,8 +250,8 @@ impl Blend {
         });
     }
 
-    /// Adds the accelerations that do not depend on other agents, m/s², for `agents` of a frozen frame, all with
-    /// this blend.
+    /// Adds the accelerations of the paper that do not depend on other agents, and those by [`Profile::forces`], m/s²,
+    /// for `agents` of a frozen frame, all with this blend.
     pub fn add_accelerations(
         &self,
         frame: &Frame,
@@ -261,9 +261,14 @@ impl Blend {
     ) {
         let first = agents.start;
         self.each_share(frame, agents, |profile, agents, weight| {
-            profile.each_term(frame, agents, changed, |_, i, term| {
+            profile.each_term(frame, agents.clone(), changed, |_, i, term| {
                 accelerations[i - first] += term * weight;
             });
+            for force in &profile.forces {
+                for i in agents.clone() {
+                    accelerations[i - first] += force.acceleration(frame, i) * weight;
+                }
+            }
         });
     }
 
@@ -303,6 +308,17 @@ struct Mix {
     high: usize,
     /// The weight of the last profile.
     kappa: f64,
+}
+
+/// The name of a force that keeps a state and that only one of these profiles has.
+fn different_state(one: &Profile, other: &Profile) -> Option<String> {
+    let lacks = |profile: &Profile, force: &Arc<dyn Force>| {
+        !force.kept().is_empty() && !profile.forces.contains(force)
+    };
+    let of_one = one.forces.iter().filter(|force| lacks(other, force));
+    let of_other = other.forces.iter().filter(|force| lacks(one, force));
+    let first = of_one.chain(of_other).next();
+    first.map(|force| force.name().to_owned())
 }
 
 fn rvo_of(profile: &Profile) -> Option<Rvo> {

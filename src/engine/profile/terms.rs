@@ -2,151 +2,93 @@
 
 use crate::math::Vector;
 
-/// Accelerations of one agent by one profile, term by term, m/s²; `None` if the profile has no such term.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Terms {
-    /// Eq. 17.
-    pub goal: Option<Vector>,
-    /// The reduction of the speed by a walking law.
-    pub walking: Option<Vector>,
-    /// Eq. 18.
-    pub social_agents: Option<Vector>,
-    /// Eq. 19.
-    pub social_walls: Option<Vector>,
-    /// Eq. 21.
-    pub rvo: Option<Vector>,
-    /// Eq. 11.
-    pub pressure_agents: Option<Vector>,
-    /// Eq. 12.
-    pub pressure_walls: Option<Vector>,
-    /// Eq. 7.
-    pub viscosity: Option<Vector>,
-    /// Eq. 22.
-    pub contact_agents: Option<Vector>,
-    /// Eq. 23.
-    pub contact_walls: Option<Vector>,
-    /// The fall of a body that leans.
-    pub balance: Option<Vector>,
-    /// The repulsion of bodies.
-    pub body_agents: Option<Vector>,
-    /// The repulsion of bodies by walls.
-    pub body_walls: Option<Vector>,
+/// Declares the terms: each is one line here, in the order of the simulation loop.
+macro_rules! terms {
+    ($($(#[$about:meta])* $Term:ident = $name:literal,)*) => {
+        /// A term of an agent's acceleration.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Term {
+            $($(#[$about])* $Term,)*
+        }
+
+        impl Term {
+            /// Every term, in the order of the simulation loop.
+            pub const ALL: &[Self] = &[$(Self::$Term),*];
+
+            /// The name of the term in breakdowns and recordings.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$Term => $name,)*
+                }
+            }
+        }
+    };
 }
 
-/// A term of an agent's acceleration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Term {
+terms! {
     /// Eq. 17.
-    Goal,
+    Goal = "goal",
     /// The reduction of the speed by a walking law.
-    Walking,
+    Walking = "walking",
     /// Eq. 18.
-    SocialAgents,
+    SocialAgents = "social_agents",
     /// Eq. 19.
-    SocialWalls,
+    SocialWalls = "social_walls",
     /// Eq. 21.
-    Rvo,
+    Rvo = "rvo",
     /// Eq. 11.
-    PressureAgents,
+    PressureAgents = "pressure_agents",
     /// Eq. 12.
-    PressureWalls,
+    PressureWalls = "pressure_walls",
     /// Eq. 7.
-    Viscosity,
+    Viscosity = "viscosity",
     /// Eq. 22.
-    ContactAgents,
+    ContactAgents = "contact_agents",
     /// Eq. 23.
-    ContactWalls,
-    /// The fall of a body that leans.
-    Balance,
-    /// The repulsion of bodies.
-    BodyAgents,
-    /// The repulsion of bodies by walls.
-    BodyWalls,
+    ContactWalls = "contact_walls",
 }
 
 impl Term {
-    /// Every term, in the order of the simulation loop.
-    pub fn all() -> impl Iterator<Item = Self> {
-        Terms::default().listed().into_iter().map(|(term, _)| term)
-    }
-
-    /// The name of the term in breakdowns and recordings.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Goal => "goal",
-            Self::Walking => "walking",
-            Self::SocialAgents => "social_agents",
-            Self::SocialWalls => "social_walls",
-            Self::Rvo => "rvo",
-            Self::PressureAgents => "pressure_agents",
-            Self::PressureWalls => "pressure_walls",
-            Self::Viscosity => "viscosity",
-            Self::ContactAgents => "contact_agents",
-            Self::ContactWalls => "contact_walls",
-            Self::Balance => "balance",
-            Self::BodyAgents => "body_agents",
-            Self::BodyWalls => "body_walls",
-        }
-    }
-
     /// Whether the term comes from walls.
     pub fn is_of_walls(self) -> bool {
-        matches!(
-            self,
-            Self::SocialWalls | Self::PressureWalls | Self::ContactWalls | Self::BodyWalls
-        )
+        self.name().ends_with("_walls")
     }
 }
 
+/// Accelerations of one agent by one profile, term by term, m/s².
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Terms {
+    values: [Option<Vector>; Term::ALL.len()],
+    /// The terms of the profile's forces that are no terms of the paper: their names, and accelerations in m/s².
+    pub own: Vec<(String, Vector)>,
+}
+
 impl Terms {
-    /// Every term with its value, in the order of the simulation loop. Destructuring makes a forgotten field a
-    /// compile error, and so does every `match` on [`Term`].
-    pub fn listed(&self) -> [(Term, Option<Vector>); 13] {
-        let Self {
-            goal,
-            walking,
-            social_agents,
-            social_walls,
-            rvo,
-            pressure_agents,
-            pressure_walls,
-            viscosity,
-            contact_agents,
-            contact_walls,
-            balance,
-            body_agents,
-            body_walls,
-        } = *self;
-        [
-            (Term::Goal, goal),
-            (Term::Walking, walking),
-            (Term::SocialAgents, social_agents),
-            (Term::SocialWalls, social_walls),
-            (Term::Rvo, rvo),
-            (Term::PressureAgents, pressure_agents),
-            (Term::PressureWalls, pressure_walls),
-            (Term::Viscosity, viscosity),
-            (Term::ContactAgents, contact_agents),
-            (Term::ContactWalls, contact_walls),
-            (Term::Balance, balance),
-            (Term::BodyAgents, body_agents),
-            (Term::BodyWalls, body_walls),
-        ]
+    /// The value of one term, m/s²; `None` if the profile has no such term.
+    pub fn get(&self, term: Term) -> Option<Vector> {
+        self.values[term as usize]
     }
 
-    /// The value of one term, m/s².
-    pub fn get(&self, term: Term) -> Option<Vector> {
-        let listed = self.listed().into_iter();
-        listed
-            .filter(|&(other, _)| other == term)
-            .find_map(|(_, value)| value)
+    /// Sets the value of a term, m/s².
+    pub fn set(&mut self, term: Term, value: Option<Vector>) {
+        self.values[term as usize] = value;
+    }
+
+    /// Sets a term to zero if it has no value yet.
+    pub fn set_zero_if_none(&mut self, term: Term) {
+        self.values[term as usize].get_or_insert(Vector::zeros());
+    }
+
+    /// The names and values of the terms that the profile has, in the order of the simulation loop.
+    pub fn listed(&self) -> impl Iterator<Item = (&str, Vector)> {
+        let built_in = Term::ALL
+            .iter()
+            .filter_map(|&term| Some((term.name(), self.get(term)?)));
+        built_in.chain(self.own.iter().map(|(name, value)| (&name[..], *value)))
     }
 
     /// The profile's acceleration, m/s².
     pub fn sum(&self) -> Vector {
-        self.listed()
-            .into_iter()
-            .filter_map(|(_, value)| value)
-            .sum()
+        self.listed().map(|(_, value)| value).sum()
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::agents::Agents;
 use crate::forces::near::Wanted;
+use crate::forces::own::Force;
 use crate::forces::walking::{Headings, WalkingLaw};
 use crate::profile::Profile;
 use crate::scene::Scene;
@@ -13,7 +14,7 @@ const WIDEST_NARROWING: f64 = 6.0;
 /// The quantities that a scene needs, decided once. No other quantity is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Needs {
-    /// Density, read in every frame by SPH forces, blending or forces from outside this crate.
+    /// Density, read in every frame by SPH forces, blending or other forces.
     pub density: bool,
     /// Sums over near neighbors that some profile reads.
     pub pairs: Wanted,
@@ -21,14 +22,14 @@ pub struct Needs {
     pub rvo: bool,
     /// Some profile uses social forces.
     pub social: bool,
-    /// Some profile has a walking law that looks ahead.
+    /// Some profile has a walking law.
     pub walking: bool,
+    /// The largest reach of forces that are not in the paper, meters.
+    pub reach: f64,
     /// The largest avoidance radius, meters.
     pub avoidance: Option<f64>,
     /// Some agents choose headings.
     pub headings: bool,
-    /// Some profile has legs.
-    pub legs: bool,
     /// Some agents leave at their goal.
     pub removal: bool,
     /// Agents have preferred speeds of their own, or do not walk all the time.
@@ -48,7 +49,7 @@ impl Needs {
             social: self.social || other.social,
             walking: self.walking || other.walking,
             headings: self.headings || other.headings,
-            legs: self.legs || other.legs,
+            reach: self.reach.max(other.reach),
             avoidance: radii.reduce(f64::max),
             removal: self.removal || other.removal,
             paces: self.paces || other.paces,
@@ -64,7 +65,7 @@ impl Scene {
         let pairs = wanted.fold(Wanted::default(), Wanted::with);
         let mut groups = self.groups.iter();
         let blending = groups.any(|group| group.blend.depends_on_density());
-        let own = self.own_forces.iter().any(|force| force.needs_density());
+        let own = self.all_forces().any(|force| force.needs_density());
         let mut laws = self.profiles().filter_map(|profile| profile.walking);
         let law = laws.any(|law| law.needs_density());
         Needs {
@@ -74,7 +75,7 @@ impl Scene {
             social: !self.social_forces().is_empty(),
             walking: !self.walking_laws().is_empty(),
             headings: self.headings().next().is_some(),
-            legs: self.groups.iter().any(|group| group.blend.legs().is_some()),
+            reach: self.all_forces().map(Force::reach).fold(0.0, f64::max),
             avoidance: (self.profiles())
                 .filter_map(|profile| profile.navigation.avoidance_radius())
                 .reduce(f64::max),

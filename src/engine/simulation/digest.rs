@@ -6,7 +6,7 @@ use super::Simulation;
 use crate::math::Vector;
 
 impl Simulation {
-    /// SHA-256, as 64 hexadecimal digits, of the frame number, of the id, position, velocity, legs, mean density and
+    /// SHA-256, as 64 hexadecimal digits, of the frame number, of the id, position, velocity, states that forces keep, mean density and
     /// laps of all agents in the order of their ids, and of all arrivals. It does not depend on the order in memory, on
     /// the number of threads, or on requests by observers: the mean density ρ̂ is included only if the scene needs it
     /// ([`Needs::density`](crate::scene::Needs::density)).
@@ -21,11 +21,13 @@ impl Simulation {
             hasher.update(agents.id[i].to_le_bytes());
             add(&mut hasher, agents.position[i]);
             add(&mut hasher, agents.velocity[i]);
-            if let (Some(&legs), Some(&velocity)) =
-                (agents.legs.get(i), agents.legs_velocity.get(i))
+            for value in agents
+                .states
+                .iter()
+                .filter_map(|states| states.of(i))
+                .flatten()
             {
-                add(&mut hasher, legs);
-                add(&mut hasher, velocity);
+                hasher.update(value.to_bits().to_le_bytes());
             }
             if has_mean_density {
                 hasher.update(agents.mean_density[i].to_bits().to_le_bytes());

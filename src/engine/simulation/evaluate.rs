@@ -2,7 +2,6 @@
 //!
 //! Plain form: `evaluate`, `terms` and `held_avoidance` in `examples/paper.rs`.
 
-use rayon::iter::{Either, repeat_n};
 use rayon::prelude::*;
 
 use super::{Fixed, Simulation, Stage};
@@ -31,7 +30,7 @@ impl Simulation {
 
     /// Step 1.
     pub(super) fn update_neighbors(&mut self) {
-        self.put_on_legs();
+        self.begin_states();
         let stale = match self.fixed.scene.neighbor_lists {
             ListPolicy::Complete => self.derived.neighbors.are_stale(),
             ListPolicy::Coarse => self.crowd.decides(),
@@ -40,7 +39,7 @@ impl Simulation {
             self.sort_agents();
         }
         let needs = &self.fixed.needs;
-        let reads_lists = needs.pairs.any() || needs.social || needs.walking;
+        let reads_lists = needs.pairs.any() || needs.social || needs.walking || needs.reach > 0.0;
         if !(reads_lists || self.density_is_due()) {
             return;
         }
@@ -244,33 +243,26 @@ impl Simulation {
         std::mem::swap(&mut self.crowd.agents.avoidance, chosen);
     }
 
-    /// Steps 3, 3B and 4, and the accelerations of legs.
+    /// Steps 3, 3B and 4.
     pub(super) fn update_acceleration(&mut self) {
         let (fixed, agents, derived) = (&self.fixed, &self.crowd.agents, &mut self.derived);
-        let bodies = &mut self.buffers.acceleration;
-        let mut legs = std::mem::take(&mut derived.fields.legs_acceleration);
+        let accelerations = &mut self.buffers.acceleration;
         derived.fields.acceleration.clear(); // stale values must not be read
         derived.finite = self.stages.time(Stage::Acceleration, || {
-            bodies.resize(agents.len(), Vector::zeros());
-            legs.resize(agents.legs.len(), Vector::zeros());
+            accelerations.resize(agents.len(), Vector::zeros());
             let frame = derived.frame(fixed, &self.crowd);
             let task = fixed.task();
-            let blocks = agents.len().div_ceil(BLOCK);
-            let legs = match legs.is_empty() {
-                true => Either::Left(repeat_n((), blocks).map(|()| &mut [][..])),
-                false => Either::Right(legs.par_chunks_mut(BLOCK)),
-            };
-            let blocks = bodies.par_chunks_mut(BLOCK).zip(legs);
+            let blocks = accelerations.par_chunks_mut(BLOCK);
             let blocks = blocks.with_min_len(task).with_max_len(2 * task).enumerate();
-            let finite = blocks.map(|(b, (bodies, legs))| {
-                fixed.accelerate(&frame, b, (&mut *bodies, &mut *legs));
-                block_is_finite(&frame, b, bodies) && are_finite(legs)
+            let finite = blocks.map(|(b, accelerations)| {
+                fixed.accelerate(&frame, b, accelerations);
+                block_is_finite(&frame, b, accelerations)
             });
             finite.reduce(|| true, |a, b| a && b)
         });
-        let fields = &mut derived.fields;
+        self.update_state_rates();
+        let fields = &mut self.derived.fields;
         std::mem::swap(&mut fields.acceleration, &mut self.buffers.acceleration);
-        fields.legs_acceleration = legs;
     }
 }
 
@@ -316,21 +308,15 @@ impl Fixed {
         }
     }
 
-    /// Computes the accelerations of the agents of block `b` and of their legs.
-    fn accelerate(
-        &self,
-        frame: &Frame,
-        b: usize,
-        (acceleration, legs): (&mut [Vector], &mut [Vector]),
-    ) {
+    /// Computes the accelerations of the agents of block `b`.
+    fn accelerate(&self, frame: &Frame, b: usize, acceleration: &mut [Vector]) {
         let from = b * BLOCK;
         let to = from + acceleration.len();
         let mut felt = PairCoefficients::default();
         self.each_span(frame.agents, from..to, |span, blend, changed| {
             blend.add_pair_coefficients(frame, span, changed, &mut felt);
         });
-        let both = (&mut *acceleration, &mut *legs);
-        near::accelerations(frame, b, &felt, self.needs.pairs, both);
+        near::accelerations(frame, b, &felt, self.needs.pairs, acceleration);
         for social in &self.social_forces {
             let mut felt = [0.0; BLOCK];
             self.each_span(frame.agents, from..to, |span, blend, _| {
@@ -342,9 +328,6 @@ impl Fixed {
             let acceleration = &mut acceleration[span.start - from..span.end - from];
             blend.add_accelerations(frame, span, changed, acceleration);
         });
-        if self.needs.legs {
-            self.accelerate_legs(frame, from, (&mut *acceleration, legs));
-        }
         for force in &self.scene.own_forces {
             for (k, acceleration) in acceleration.iter_mut().enumerate() {
                 *acceleration += force.acceleration(frame, from + k);

@@ -66,13 +66,13 @@ impl Simulation {
         }
     }
 
-    /// Moves bodies, then legs, by a whole frame.
+    /// Moves agents, then the states that forces keep for them, by a whole frame.
     pub(super) fn move_both(
         &mut self,
         motion: impl Fn(usize, Vector, Vector) -> Motion + Sync + Copy,
     ) {
         self.move_all(motion);
-        self.move_legs(self.crowd.clock.time_step(), motion);
+        self.advance_states(self.crowd.clock.time_step());
     }
 
     /// Moves all agents by a whole frame; counts the moves of those that are present, those stopped by walls, and
@@ -163,7 +163,7 @@ impl Simulation {
     /// The first quantity that is not finite, and its agent.
     fn find_fault(&self) -> Option<Fault> {
         let (crowd, fields) = (&self.crowd, &self.derived.fields);
-        let (agents, of_legs) = (&crowd.agents, &fields.legs_acceleration);
+        let agents = &crowd.agents;
         let fault = |i: usize, quantity| Fault::NotFinite {
             frame: crowd.clock.frame(),
             time: crowd.clock.time(),
@@ -172,12 +172,19 @@ impl Simulation {
             quantity,
         };
         let not_finite = |values: &[Vector]| values.iter().position(|&v| !is_finite(v));
+        let state = || {
+            let rates = fields.state_rates.iter().zip(&agents.states);
+            let mut wrong = rates.filter_map(|(rates, states)| {
+                let first = rates.iter().position(|rate| !rate.is_finite());
+                Some(first? / states.width())
+            });
+            wrong.next()
+        };
         let density = || fields.density.iter().position(|d| !d.is_finite());
         // Causes before effects: a non-finite position can make all forces on its agent non-finite.
         None.or_else(|| Some((not_finite(&agents.position)?, "position")))
             .or_else(|| Some((not_finite(&agents.velocity)?, "velocity")))
-            .or_else(|| Some((not_finite(&agents.legs)?, "position of legs")))
-            .or_else(|| Some((not_finite(of_legs)?, "acceleration of legs")))
+            .or_else(|| Some((state()?, "state that a force keeps")))
             .or_else(|| Some((density()?, "density")))
             .or_else(|| Some((not_finite(&fields.acceleration)?, "acceleration")))
             .map(|(i, quantity)| fault(i, quantity))
@@ -226,7 +233,7 @@ impl Crowd {
 /// An upper bound of the relative rounding errors of squared distances.
 const ROUNDING: f64 = 1e-12;
 
-/// The motion of an agent or of its legs. Both velocities are clamped to s_max.
+/// The motion of an agent. Both velocities are clamped to s_max.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Motion {
     /// The velocity during the move, m/s.
@@ -243,9 +250,9 @@ impl Motion {
     }
 }
 
-/// The motions of the agents, or of the legs, of a block.
+/// The motions of the agents of a block.
 #[inline(always)]
-pub(super) fn find_motions(
+fn find_motions(
     motion_of: impl Fn(usize, Vector, Vector) -> Motion,
     velocities: &[Vector],
     accelerations: &[Vector],
@@ -257,9 +264,9 @@ pub(super) fn find_motions(
     }
 }
 
-/// Moves agents, or legs, by `dt` seconds if none is faster than `limit`, m/s; else returns `false` and moves none.
+/// Moves agents by `dt` seconds if none is faster than `limit`, m/s; else returns `false` and moves none.
 #[inline(always)]
-pub(super) fn move_freely(
+fn move_freely(
     limit: f64,
     dt: f64,
     motions: &[Motion],

@@ -89,7 +89,7 @@ impl Simulation {
             }
             let leaving = crowd.pass(scene, before, &crossings);
             for crossing in &crossings {
-                fixed.hold_legs(&mut crowd.agents, crossing.agent);
+                fixed.fit_states(&mut crowd.agents, crossing.agent);
             }
             crowd.pass_doors(scene, before, &near);
             crowd.leave(scene, leaving);

@@ -16,9 +16,6 @@ impl Simulation {
         self.stages.time(Stage::Integration, || {
             let before = &mut agents.acceleration_before;
             correct(&mut agents.velocity, before, &fields.acceleration, dt);
-            let before = &mut agents.legs_acceleration_before;
-            let now = &fields.legs_acceleration;
-            correct(&mut agents.legs_velocity, before, now, dt);
         });
         self.move_both(|_, v, a| Motion {
             way: v + a * (0.5 * dt),
@@ -29,12 +26,11 @@ impl Simulation {
     pub(super) fn move_by_midpoint(&mut self, dt: f64) -> Result<(), Fault> {
         let mut begin = self.crowd.agents.clone();
         self.keep_mean_density();
-        let half = |_: usize, v: Vector, a: Vector| Motion {
+        self.move_agents(0.5 * dt, |_, v, a| Motion {
             way: v,
             velocity: v + a * (0.5 * dt),
-        };
-        self.move_agents(0.5 * dt, half);
-        self.move_legs(0.5 * dt, half);
+        });
+        self.advance_states(0.5 * dt);
         self.pack();
         self.update_density_and_pressure(0.5 * dt);
         self.follow_ways(self.crowd.clock.is_coarse());
@@ -48,17 +44,12 @@ impl Simulation {
         agents.position = begin.position;
         std::mem::swap(&mut agents.velocity, &mut begin.velocity);
         let half_way = begin.velocity;
-        agents.legs = begin.legs;
-        std::mem::swap(&mut agents.legs_velocity, &mut begin.legs_velocity);
-        let legs_half_way = begin.legs_velocity;
+        agents.states = begin.states;
         self.move_all(|i, v, a| Motion {
             way: half_way[i],
             velocity: v + a * dt,
         });
-        self.move_legs(dt, |i, v, a| Motion {
-            way: legs_half_way[i],
-            velocity: v + a * dt,
-        });
+        self.advance_states(dt);
         Ok(())
     }
 }

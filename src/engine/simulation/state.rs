@@ -67,6 +67,11 @@ impl Simulation {
         let mut simulation = Self::new(empty).map_err(|_| StateError)?;
         state.check(&simulation.fixed.scene)?;
         let crowd = &mut simulation.crowd;
+        let states = state.agents.states.iter().zip(&crowd.agents.states);
+        let like = states.filter(|(saved, new)| saved.is_like(new)).count();
+        if like != state.agents.states.len().max(crowd.agents.states.len()) {
+            return Err(StateError);
+        }
         crowd.clock.go_to(state.frame);
         crowd.agents = state.agents;
         crowd.schedule = state.schedule;

@@ -1,5 +1,7 @@
 //! The seven profiles of §5.5, calibrated ones, and custom profiles from parameters.
 
+use std::sync::Arc;
+
 pub use super::parameters::{NavigationKind, Parameters, SPH, WalkingLawKind};
 
 use crate::error::{quote::shown, suggestion};
@@ -34,11 +36,10 @@ const BLEND_DENSITIES: [f64; 2] = [2.0, 4.0];
 impl Parameters {
     fn walking(&self) -> Option<WalkingLaw> {
         match self.walking_law? {
-            WalkingLawKind::None => None,
+            WalkingLawKind::None | WalkingLawKind::Drag => None,
             WalkingLawKind::Headway => Some(WalkingLaw::Headway(self.headway())),
             WalkingLawKind::DensityAhead => Some(WalkingLaw::DensityAhead(self.density_ahead())),
             WalkingLawKind::Headings => Some(WalkingLaw::Headings(self.headings())),
-            WalkingLawKind::Drag => Some(WalkingLaw::Drag(self.drag())),
         }
     }
 
@@ -46,6 +47,10 @@ impl Parameters {
     pub fn profile(&self, name: &str, kind: NavigationKind, sph: bool) -> Profile {
         let switch = |value: f64| (value != 0.0).then_some(value);
         let (agent_stiffness, wall_stiffness) = if sph { (50.0, 200.0) } else { (1000.0, 1000.0) };
+        let mut forces = self.forces();
+        if self.walking_law == Some(WalkingLawKind::Drag) {
+            forces.push(Arc::new(self.drag()));
+        }
         Profile {
             name: name.to_owned(),
             navigation: match kind {
@@ -64,7 +69,7 @@ impl Parameters {
                 contact_scale: self.contact_scale.unwrap_or(1.0),
                 wall_contact_scale: self.wall_contact_scale.unwrap_or(1.0),
             },
-            legs: self.legs.unwrap_or(false).then(|| self.legs_law()),
+            forces,
         }
     }
 }

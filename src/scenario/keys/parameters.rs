@@ -1,18 +1,22 @@
 //! The parameters of profiles, and the parts of the engine that they set.
 
+use std::sync::Arc;
+
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use engine::density::SphParameters;
 use engine::forces::contact::Contact;
+use engine::forces::drag::Drag;
 use engine::forces::goal::GoalForce;
 use engine::forces::legs::Legs;
+use engine::forces::own::Force;
 use engine::forces::rvo::Rvo;
 use engine::forces::social::SocialForce;
 use engine::forces::viscosity::Viscosity;
 use engine::forces::walking::headings::Gap;
-use engine::forces::walking::{DensityAhead, Drag, Headings, Headway};
+use engine::forces::walking::{DensityAhead, Headings, Headway};
 
 /// The kind of navigation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
@@ -53,7 +57,8 @@ macro_rules! kind {
 }
 
 /// Declares the parameters of profiles, and how parts of the engine are made of them. Meaning, range and default of a
-/// parameter are those of the engine's field of the same name.
+/// parameter are those of the engine's field of the same name. A part with `if` is a force that is not in the paper: a
+/// profile has it if the parameter named there is true.
 macro_rules! parameters {
     (
         $(#[$about:meta])*
@@ -63,12 +68,13 @@ macro_rules! parameters {
         $(
             $(#[$part_about:meta])*
             $part:ident: $Part:ident { $($name:ident $(: $kind:ty)?),* }
-            $(with $($shared:ident),*)? $(of $($inner:ident),*)?;
+            $(with $($shared:ident),*)? $(of $($inner:ident),*)? $(if $(#[$switch_about:meta])* $switch:ident)?;
         )*
     ) => {
         $(#[$about])*
         pub struct $All {
             $($(#[$own_about])* pub $own: Option<$own_kind>,)*
+            $($($(#[$switch_about])* #[schemars(extend("default" = false))] pub $switch: Option<bool>,)?)*
             $($(
                 #[doc = concat!("[`", stringify!($Part), "::", stringify!($name), "`].")]
                 pub $name: Option<kind!($($kind)?)>,
@@ -80,6 +86,7 @@ macro_rules! parameters {
             pub fn or(&self, fallback: &Self) -> Self {
                 Self {
                     $($own: self.$own.or(fallback.$own),)*
+                    $($($switch: self.$switch.or(fallback.$switch),)?)*
                     $($($name: self.$name.or(fallback.$name),)*)*
                 }
             }
@@ -89,6 +96,15 @@ macro_rules! parameters {
                 let is_wrong = |given: Option<f64>| given.is_some_and(|value| !value.is_finite());
                 let all = [$($((stringify!($name), self.$name.map(f64::from)),)*)*];
                 all.into_iter().find_map(|(name, given)| is_wrong(given).then_some(name))
+            }
+
+            /// The forces that are not in the paper.
+            pub fn forces(&self) -> Vec<Arc<dyn Force>> {
+                let mut forces: Vec<Arc<dyn Force>> = Vec::new();
+                $($(if self.$switch == Some(true) {
+                    forces.push(Arc::new(self.$part()));
+                })?)*
+                forces
             }
 
             $(
@@ -122,10 +138,6 @@ parameters! {
         /// density ahead; `drag`, a friction. A law replaces social forces; with both, agents brake twice.
         #[schemars(extend("default" = "none"))]
         walking_law: WalkingLawKind,
-        /// Whether people have legs under their bodies, and sway: the law of Chatagnon and others (2026). All profiles
-        /// of a blend have the same legs.
-        #[schemars(extend("default" = false))]
-        legs: bool,
         /// [`Viscosity::coefficient`].
         viscosity: f64,
         /// [`Contact::agent_stiffness`].
@@ -164,7 +176,10 @@ parameters! {
     /// The legs under a body.
     legs_law: Legs {
         unbalancing_rate, balancing_rate, balance_speed, legs_strength, body_range, leg_range, legs_reach, lean_limit
-    };
+    } if
+        /// Whether people have legs under their bodies, and sway: the law of Chatagnon and others (2026). All profiles
+        /// of a blend have the same legs.
+        legs;
     /// The SPH parameters that all profiles of a blend share.
     sph: SphParameters { support_radius, gas_constant, rest_density_min, rest_density_max, averaging_time };
 }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::window::Window;
 use super::{Measure, Observed, Quantity};
 use crate::error::Problem;
+use engine::forces::legs::{self, Legs};
 use engine::math::Vector;
 use engine::simulation::Simulation;
 
@@ -87,14 +88,14 @@ impl Measure for Unbalanced {
         let [mut people, mut unbalanced] = [0_u64; 2];
         for i in agents.present() {
             let position = agents.position[i];
-            let Some(law) = simulation.blend(i).legs() else {
+            let Some(law) = Legs::among(simulation.blend(i).forces()) else {
                 continue;
             };
             if region.is_some_and(|region| !region.contains(position)) {
                 continue;
             }
             people += 1;
-            let lean = agents.lean(i).norm();
+            let lean = legs::lean(agents, i).norm();
             seen.leans += lean;
             if lean >= NEARLY * law.lean_limit {
                 unbalanced += 1;

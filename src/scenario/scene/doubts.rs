@@ -14,6 +14,7 @@ use crate::measurements::Measurement;
 use crate::scene::journeys::TO_EXIT;
 use crate::scene::{changes, eclipsed, leaving, through_walls, units};
 use engine::entrance::Entrance;
+use engine::forces::legs::Legs;
 use engine::geometry::Walls;
 use engine::journeys::{Change, ChangeKind, Choice, Kind, Place};
 use engine::math::{Vector, bounds};
@@ -147,7 +148,7 @@ fn on_legs(keys: &File, scene: &Scene) -> Option<String> {
     let end = keys.duration_secs.unwrap_or(f64::INFINITY);
     let walks = |group: &Group, own: Option<f64>, is_sent: bool| {
         let waits = own.or_else(|| Some(group.traits.premovement.as_ref()?.quantile(SOME)));
-        group.blend.legs().is_some() && is_sent && waits.unwrap_or(0.0) < end
+        Legs::among(group.blend.forces()).is_some() && is_sent && waits.unwrap_or(0.0) < end
     };
     let is_sent = |group: &Group| {
         group.journey.is_some() || group.removal_radius.is_some() || group.direction.is_some()

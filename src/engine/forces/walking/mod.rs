@@ -9,19 +9,17 @@
 //!
 //! so that both together are the goal force with the lowered speed. RVO has no goal force; the lowered speed is in
 //! its cost (Eq. 20). Agents decide on s_i^law in coarse frames, like RVO on its velocities, and hold it in between:
-//! people take longer to react. [`Drag`] is a friction. Agents without preferred velocity do not look ahead.
+//! people take longer to react. Agents without preferred velocity do not look ahead.
 //!
 //! With [`Headings`], agents also choose a heading ĥ_i beside ê_i, and the acceleration is
 //! K^goal/(τ m_i) (s_i^law ĥ_i − s_i ê_i). They hold the angle between both until the next coarse frame.
 
 mod density_ahead;
-mod drag;
 pub mod headings;
 mod headway;
 mod walkers;
 
 pub use density_ahead::DensityAhead;
-pub use drag::Drag;
 pub use headings::Headings;
 pub use headway::Headway;
 
@@ -44,8 +42,6 @@ pub enum WalkingLaw {
     Headway(Headway),
     /// Agents walk slower the denser the crowd ahead.
     DensityAhead(DensityAhead),
-    /// A friction that grows with the density.
-    Drag(Drag),
     /// Agents choose a heading by the room that it has, and keep a time gap along it.
     Headings(Headings),
 }
@@ -73,14 +69,6 @@ pub struct Decided<'a> {
 }
 
 impl WalkingLaw {
-    /// Whether the law lowers preferred speeds by the agents ahead.
-    pub fn looks_ahead(&self) -> bool {
-        match self {
-            Self::Headway(_) | Self::DensityAhead(_) | Self::Headings(_) => true,
-            Self::Drag(_) => false,
-        }
-    }
-
     /// The farthest distance of agents that can slow an agent with this preferred speed, m/s, meters; `support` is
     /// the largest support radius.
     pub fn reach(&self, speed: f64, support: f64) -> f64 {
@@ -101,7 +89,7 @@ impl WalkingLaw {
     pub fn headings(&self) -> Option<&Headings> {
         match self {
             Self::Headings(law) => Some(law),
-            Self::Headway(_) | Self::DensityAhead(_) | Self::Drag(_) => None,
+            Self::Headway(_) | Self::DensityAhead(_) => None,
         }
     }
 
@@ -113,18 +101,15 @@ impl WalkingLaw {
                 aside: support,
                 ..View::default()
             },
-            Self::Drag(_) => View::default(),
             Self::Headings(law) => law.view(),
         }
     }
 
-    /// The rates at which the lowered speed changes with the place of an agent and with the velocity of the one ahead,
-    /// or the friction.
+    /// The rates at which the lowered speed changes with the place of an agent and with the velocity of the one ahead.
     pub fn rates(&self, of: &Extremes) -> Rates {
         match self {
             Self::Headway(law) => law.rates(),
             Self::DensityAhead(law) => law.rates(of),
-            Self::Drag(law) => law.rates(of),
             Self::Headings(law) => law.rates(),
         }
     }
@@ -133,7 +118,6 @@ impl WalkingLaw {
     pub fn needs_density(&self) -> bool {
         match self {
             Self::Headway(_) | Self::DensityAhead(_) => false,
-            Self::Drag(_) => true,
             Self::Headings(law) => law.gap.press_share != 0.0 || law.gap.queue_share != 0.0,
         }
     }
@@ -200,7 +184,6 @@ impl WalkingLaw {
                     law.lost_speeds(simd, bodies, &walkers, &runs)
                 }
                 Self::DensityAhead(law) => law.lost_speeds(simd, bodies, &walkers, &runs),
-                Self::Drag(_) => continue,
             };
             let lost = store::<R, S>(lost);
             for (k, i) in own.enumerate().filter(|&(_, i)| due.is_due[i]) {

@@ -5,9 +5,12 @@
 //! a_i = −γ(ρ_i) v_i with γ = γ₀ max(0, ρ_i − ρ_start). With the goal force of Eq. 17 an agent of mass 1 walks at
 //! s_i/(1 + γ τ/K^goal).
 
+use std::any::Any;
+
 use schemars::JsonSchema;
 
-use crate::forces::rates::{Extremes, Rates};
+use super::own::Force;
+use super::rates::{Extremes, Rates};
 use crate::frame::Frame;
 use crate::limits::{HIGHEST_DENSITY, STRONGEST};
 use crate::math::Vector;
@@ -38,21 +41,34 @@ impl Default for Drag {
 const CROWDED: f64 = 2.0;
 
 impl Drag {
+    /// γ, 1/s, at this density, P/m².
+    pub fn rate(&self, density: f64) -> f64 {
+        self.drag_per_density * (density - self.drag_from_density).max(0.0)
+    }
+}
+
+impl Force for Drag {
+    fn name(&self) -> &str {
+        "drag"
+    }
+
+    fn needs_density(&self) -> bool {
+        true
+    }
+
     /// γ in the densest crowds.
-    pub(super) fn rates(&self, of: &Extremes) -> Rates {
+    fn rates(&self, of: &Extremes) -> Rates {
         Rates {
             friction: self.rate(CROWDED * of.sph.rest_density_max),
             ..Rates::default()
         }
     }
 
-    /// γ, 1/s, at this density, P/m².
-    pub fn rate(&self, density: f64) -> f64 {
-        self.drag_per_density * (density - self.drag_from_density).max(0.0)
+    fn acceleration(&self, frame: &Frame, i: usize) -> Vector {
+        frame.agents.velocity[i] * -self.rate(frame.fields.density[i])
     }
 
-    /// −γ v of agent `i`, m/s².
-    pub fn acceleration(&self, frame: &Frame, i: usize) -> Vector {
-        frame.agents.velocity[i] * -self.rate(frame.fields.density[i])
+    fn equals(&self, other: &dyn Force) -> bool {
+        (other as &dyn Any).downcast_ref() == Some(self)
     }
 }
