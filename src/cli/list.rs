@@ -98,21 +98,21 @@ fn all_settings() -> Value {
 }
 
 fn settings_text() -> String {
-    let mut text = String::new();
-    for setting in settings() {
+    let setting = |setting: SettingDoc| {
         let default = setting
             .default
             .map(|default| format!("default: {default}; "));
         let values = format!("{}{}", default.unwrap_or_default(), setting.range);
-        text += &entry(setting.key, 0, setting.description);
-        text += &entry("", 2, &values);
-    }
-    text += "\nKeys of nested objects (? = optional; `sandbox list --schema` describes them):\n";
-    for (path, keys) in nested_settings() {
-        text += &entry(&path, 0, &keys);
-    }
-    text + "\nA dotted path sets a value inside a list or object: --set sources.0.rows=50\n\
-            Parameters set this way apply to all profiles of the scenario.\n"
+        entry(setting.key, 0, setting.description) + &entry("", 2, &values)
+    };
+    let settings: String = settings().into_iter().map(setting).collect();
+    let nested = nested_settings().into_iter();
+    let nested: String = nested.map(|(path, keys)| entry(&path, 0, &keys)).collect();
+    format!(
+        "{settings}\nKeys of nested objects (? = optional; `sandbox list --schema` describes them):\n{nested}\n\
+         A dotted path sets a value inside a list or object: --set sources.0.rows=50\n\
+         Parameters set this way apply to all profiles of the scenario.\n"
+    )
 }
 
 /// `sandbox list --schema`.

@@ -207,7 +207,8 @@ impl Observer<Failure> for Recording {
             let end = format!("The run ends: {}.", run.reason());
             self.recorder.note(&self.last, &end)?;
             let json = results::json(run).to_string();
-            self.recorder.results(&results::text(run, false), &json)?;
+            let text = results::document(run, false).text();
+            self.recorder.results(&text, &json)?;
         }
         Ok(())
     }

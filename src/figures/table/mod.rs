@@ -125,9 +125,13 @@ impl Table {
         }
     }
 
-    /// As plain text in aligned columns: texts left-aligned, numbers right-aligned.
+    /// As plain text in aligned columns: texts left-aligned, numbers right-aligned. Names stand above them unless all are
+    /// empty.
     pub fn text(&self) -> String {
-        let lines = self.lines();
+        let mut lines = self.lines();
+        if self.heads.iter().all(|head| head.name.is_empty()) {
+            lines.remove(0);
+        }
         let layout = (0..self.heads.len()).map(|k| {
             let width = lines.iter().map(|line| line[k].chars().count()).max();
             (width.unwrap_or(0), self.has_numbers(k))
