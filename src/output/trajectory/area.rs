@@ -74,7 +74,7 @@ impl WalkableArea {
     pub fn reach(&mut self, rows: &[Row<'_>]) -> bool {
         let mut grown = false;
         for row in rows {
-            let place = Vector::new(row.pos_x, row.pos_y);
+            let place = row.position();
             let [low, high] = self.bounds;
             if (place - low).min() <= 0.0 || (high - place).min() <= 0.0 {
                 let margin = Vector::new(MARGIN, MARGIN);
