@@ -10,7 +10,7 @@ use plotters::prelude::*;
 
 use super::error::{Drawn, PlotError};
 use super::ink::{Ink, fill};
-use super::{Cells, Disc, LABEL_SIZE, Label, Mark, NO_DATA, Panel, Style};
+use super::{Cells, Disc, LABEL_SIZE, Label, Mark, NO_DATA, Panel, Point, Style};
 use crate::colors::Rgb;
 
 /// More discs or cells than this are drawn as pixels: as separate shapes, they would make an SVG too large for
@@ -181,6 +181,7 @@ fn rim_color(color: Rgb) -> Rgb {
     color.map(|value| (f64::from(value) * 0.5) as u8)
 }
 
+/// Draws one mark, shape by shape.
 fn draw_shapes<DB: DrawingBackend>(
     mark: &Mark,
     panel: &Panel,
@@ -188,20 +189,7 @@ fn draw_shapes<DB: DrawingBackend>(
     ink: Ink,
 ) -> Drawn {
     match mark {
-        Mark::Discs(discs) => {
-            let scale = panel.scale(chart.plotting_area().dim_in_pixel().0);
-            let shown = panel.shown(discs, |disc| disc.center);
-            let circle = |at: Place, radius: f64, color: Rgb| {
-                Circle::new(at, radius.round().max(1.0) as i32, fill(color))
-            };
-            for (disc, at) in shown {
-                let radius = disc.radius * scale;
-                let rim = rim(radius, ink);
-                let outer = (rim > 0.0).then(|| circle(at, radius, rim_color(disc.color)));
-                let inner = circle(at, radius - rim, disc.color);
-                chart.draw_series(outer.into_iter().chain([inner]))?;
-            }
-        }
+        Mark::Discs(discs) => draw_discs(discs, panel, chart, ink)?,
         Mark::Area(corners, color) => {
             let rim = corners.iter().chain(corners.first());
             let rim = with_crossings(rim.map(|&corner| panel.place(corner)).collect());
@@ -213,41 +201,9 @@ fn draw_shapes<DB: DrawingBackend>(
             let parts = path.split(|place| !is_inside(place));
             chart.draw_series(parts.map(|part| line(part.to_vec(), style, ink)))?;
         }
-        Mark::Points(points, style) => {
-            let shown = panel.shown(points, |point| [point.x, point.y]);
-            let (look, ends) = (
-                ink.stroke(style.color, ERROR_BAR),
-                ink.units(1.6 * style.width),
-            );
-            let uncertain = shown.iter().filter(|(point, _)| point.error > 0.0);
-            chart.draw_series(uncertain.map(|&(point, (x, y))| {
-                let low = panel.y.place(point.y - point.error).max(0.0);
-                let high = panel.y.place(point.y + point.error).min(1.0);
-                ErrorBar::new_vertical(x, low, y, high, look, ends as u32)
-            }))?;
-            if style.broken {
-                // Error bars and lines do not show through hollow dots.
-                let white = Style::full([255; 3], 0.8 * style.width, "");
-                chart.draw_series(shown.iter().map(|&(_, at)| dot(at, &white, ink)))?;
-            }
-            chart.draw_series(shown.iter().map(|&(_, at)| dot(at, style, ink)))?;
-        }
-        Mark::Cells(cells) | Mark::Overlay(cells) => {
-            let missing = matches!(mark, Mark::Cells(_)).then_some(NO_DATA);
-            let [low, high] = cells.extent;
-            let counts = [cells.columns, cells.values.len() / cells.columns.max(1)];
-            let corner = |index: [usize; 2]| {
-                let part = |k: usize| index[k] as f64 / counts[k] as f64;
-                bounded(panel.place([0, 1].map(|k| low[k] + part(k) * (high[k] - low[k]))))
-            };
-            let values = cells.values.iter().enumerate();
-            chart.draw_series(values.filter_map(|(k, value)| {
-                let (column, row) = (k % cells.columns, k / cells.columns);
-                let corners = [corner([column, row]), corner([column + 1, row + 1])];
-                let color = cells.color(*value).or(missing)?;
-                Some(Rectangle::new(corners, fill(color)))
-            }))?;
-        }
+        Mark::Points(points, style) => draw_points((points, style), panel, chart, ink)?,
+        Mark::Cells(cells) => draw_cells(cells, panel, chart, Some(NO_DATA))?,
+        Mark::Overlay(cells) => draw_cells(cells, panel, chart, None)?,
         Mark::Label(label) => draw_label(label, panel, chart, ink)?,
         Mark::Group(marks) => {
             for mark in marks {
@@ -260,6 +216,79 @@ fn draw_shapes<DB: DrawingBackend>(
             chart.draw_series([Text::new(text.clone(), at, style)])?;
         }
     }
+    Ok(())
+}
+
+fn draw_discs<DB: DrawingBackend>(
+    discs: &[Disc],
+    panel: &Panel,
+    chart: &mut Chart<DB>,
+    ink: Ink,
+) -> Drawn {
+    let scale = panel.scale(chart.plotting_area().dim_in_pixel().0);
+    let circle = |at: Place, radius: f64, color: Rgb| {
+        Circle::new(at, radius.round().max(1.0) as i32, fill(color))
+    };
+    for (disc, at) in panel.shown(discs, |disc| disc.center) {
+        let radius = disc.radius * scale;
+        let rim = rim(radius, ink);
+        let outer = (rim > 0.0).then(|| circle(at, radius, rim_color(disc.color)));
+        let inner = circle(at, radius - rim, disc.color);
+        chart.draw_series(outer.into_iter().chain([inner]))?;
+    }
+    Ok(())
+}
+
+/// Draws points with the bars of their errors.
+fn draw_points<DB: DrawingBackend>(
+    (points, style): (&[Point], &Style),
+    panel: &Panel,
+    chart: &mut Chart<DB>,
+    ink: Ink,
+) -> Drawn {
+    let shown = panel.shown(points, |point| [point.x, point.y]);
+    let dots = |style: &Style| {
+        shown
+            .iter()
+            .map(|&(_, at)| dot(at, style, ink))
+            .collect::<Vec<_>>()
+    };
+    let look = ink.stroke(style.color, ERROR_BAR);
+    let ends = ink.units(1.6 * style.width) as u32;
+    let uncertain = shown.iter().filter(|(point, _)| point.error > 0.0);
+    chart.draw_series(uncertain.map(|&(point, (x, y))| {
+        let low = panel.y.place(point.y - point.error).max(0.0);
+        let high = panel.y.place(point.y + point.error).min(1.0);
+        ErrorBar::new_vertical(x, low, y, high, look, ends)
+    }))?;
+    if style.broken {
+        // Error bars and lines do not show through hollow dots.
+        chart.draw_series(dots(&Style::full([255; 3], 0.8 * style.width, "")))?;
+    }
+    chart.draw_series(dots(style))?;
+    Ok(())
+}
+
+/// Draws cells; those without a value in the color `missing`, or not at all.
+fn draw_cells<DB: DrawingBackend>(
+    cells: &Cells,
+    panel: &Panel,
+    chart: &mut Chart<DB>,
+    missing: Option<Rgb>,
+) -> Drawn {
+    let [low, high] = cells.extent;
+    let counts = [cells.columns, cells.values.len() / cells.columns.max(1)];
+    let corner = |index: [usize; 2]| {
+        let part = |k: usize| index[k] as f64 / counts[k] as f64;
+        bounded(panel.place([0, 1].map(|k| low[k] + part(k) * (high[k] - low[k]))))
+    };
+    let values = cells.values.iter().enumerate();
+    chart.draw_series(values.filter_map(|(k, value)| {
+        let (column, row) = (k % cells.columns, k / cells.columns);
+        let corners = [corner([column, row]), corner([column + 1, row + 1])];
+        let color = cells.color(*value).or(missing)?;
+        Some(Rectangle::new(corners, fill(color)))
+    }))?;
     Ok(())
 }
 
