@@ -73,11 +73,11 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
             options.file.display()
         ));
     }
-    let until = options.output.until.map(|secs| {
+    let typed = options.output.until.map(|secs| {
         let text = format!("duration_secs={secs}");
         setting(&text).map(|setting| setting.typed_as(format!("--until {secs}")))
     });
-    let until: Option<Setting> = until.transpose()?;
+    let until: Option<Setting> = typed.transpose()?;
     let draft = checkpoint.draft(until.as_slice())?;
     let (scenario, _) = draft.within(main_memory(), memory::of_writing(&options.output))?;
     let resumable = until.is_some().then(|| checkpoint.scenario(&[]).ok());

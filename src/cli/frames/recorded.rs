@@ -97,8 +97,8 @@ impl Film for Recorded {
             (to.0 > from.0).then(|| (to.1 - from.1) / (to.0 - from.0))
         };
         let is_known = |radius: &f64| *radius > 0.0;
-        let radii = crowd.radii.into_iter();
-        let radii = radii.map(|radius| Some(radius).filter(is_known).unwrap_or(REFERENCE_RADIUS));
+        let known = crowd.radii.into_iter();
+        let radii = known.map(|radius| Some(radius).filter(is_known).unwrap_or(REFERENCE_RADIUS));
         let radius: Vec<f64> = radii.collect();
         let mass = |radius: &f64| (radius / REFERENCE_RADIUS).powi(2);
         let velocities = crowd.ids.iter().zip(&crowd.positions).map(velocity);

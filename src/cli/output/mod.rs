@@ -308,9 +308,9 @@ fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> Reco
 /// The name of a recording: the scenario with its profile and seed, and what differs from its file.
 fn title(scenario: &Scenario) -> String {
     let own = format!("{} {}", scenario.name, scenario.profile_name);
-    let others = scenario.changes.iter();
+    let changes = scenario.changes.iter();
     let others =
-        others.filter(|change| !change.starts_with("profile") && !change.starts_with("seed "));
+        changes.filter(|change| !change.starts_with("profile") && !change.starts_with("seed "));
     let changes: String = others.map(|change| format!(", {change}")).collect();
     format!("{own} seed {}{changes}", scenario.seed)
 }

@@ -19,8 +19,8 @@ use scenario::measurements::{Integrity, Metric};
 
 /// The summary, with version, identity, all settings, threads and run times.
 pub fn json(run: &Run) -> Value {
-    let stages = run.simulation.stages().ms_per_frame();
-    let stages = stages.map(|(stage, ms)| (stage.name().to_owned(), json!(ms)));
+    let spent = run.simulation.stages().ms_per_frame();
+    let stages = spent.map(|(stage, ms)| (stage.name().to_owned(), json!(ms)));
     let [ms, real_time_factor] = speed(run);
     let mut report = json!(Summary::of(run));
     report["version"] = json!(env!("CARGO_PKG_VERSION"));
@@ -81,8 +81,8 @@ fn measured(run: &Run) -> Vec<Block> {
     let mut rows: Vec<Option<&Metric>> = Vec::new();
     let mut before = 0;
     for group in groups() {
-        let shown = group.iter().filter(|metric| !is_folded(group, metric));
-        let shown: Vec<Option<&Metric>> = shown.map(Some).collect();
+        let apart = group.iter().filter(|metric| !is_folded(group, metric));
+        let shown: Vec<Option<&Metric>> = apart.map(Some).collect();
         if shown.is_empty() {
             continue;
         }
@@ -157,8 +157,8 @@ fn names_of<'a>(head: &str, metrics: impl Iterator<Item = &'a Metric>) -> String
 /// The ids of the agents that `integrity` has found in walls; empty without any.
 fn through_walls(run: &Run) -> String {
     let mut data = run.metrics.data();
-    let ids = data.find(|(name, _)| name == Integrity::NAME);
-    let ids = ids.and_then(|(_, ids)| Vec::<u32>::deserialize(ids).ok());
+    let found = data.find(|(name, _)| name == Integrity::NAME);
+    let ids = found.and_then(|(_, ids)| Vec::<u32>::deserialize(ids).ok());
     ids.map_or(String::new(), |ids| {
         let ids: Vec<String> = ids.iter().map(u32::to_string).collect();
         let first = ids.join(", ");

@@ -46,8 +46,8 @@ fn motivation(scene: &Scene) -> String {
     }) else {
         return String::new();
     };
-    let zones = scene.journeys.zones.iter().map(|zone| zone.motivation);
-    let zones = match zones.fold(0.0, f64::max) {
+    let raised = scene.journeys.zones.iter().map(|zone| zone.motivation);
+    let zones = match raised.fold(0.0, f64::max) {
         most if most > low => format!(", {most} in zones"),
         _ => String::new(),
     };
@@ -86,11 +86,11 @@ pub fn facts(summary: &Summary) -> Vec<(String, String)> {
 /// The agents that left by each exit, and elsewhere; `None` without exits.
 fn left_by_exit(summary: &Summary) -> Option<String> {
     let exits = summary.places.iter().filter(|place| place.kind == "exit");
-    let by_exit = exits.map(|exit| {
+    let shares = exits.map(|exit| {
         let percent = exit.share.map_or(0.0, |share| 100.0 * share);
         format!("{} {} ({percent:.0} %)", shown(&exit.name), exit.passed)
     });
-    let mut by_exit: Vec<String> = by_exit.collect();
+    let mut by_exit: Vec<String> = shares.collect();
     let at_exits: f64 = summary.places.iter().filter_map(|exit| exit.share).sum();
     let elsewhere = ((1.0 - at_exits) * summary.arrived as f64).round();
     if elsewhere > 0.0 && !by_exit.is_empty() {
@@ -135,12 +135,12 @@ fn queue(queue: &LongestQueue) -> String {
 
 /// When 50 %, 95 % and all agents had left.
 fn times_out(summary: &Summary) -> String {
-    let times = [
+    let parts = [
         ("50 %", summary.t50_secs),
         ("95 %", summary.t95_secs),
         ("all", summary.t100_secs),
     ];
-    let times = times.map(|(part, secs)| match secs {
+    let times = parts.map(|(part, secs)| match secs {
         Some(secs) => format!("{part} at {secs:.2} s"),
         None => format!("{part} not by the end"),
     });
