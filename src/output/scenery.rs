@@ -127,11 +127,11 @@ fn plain(text: &str) -> String {
 /// The names of places, zones, entrances and sources, with and without their kinds, as names are compared.
 fn names(scene: &Scene) -> BTreeSet<String> {
     let journeys = &scene.journeys;
-    let places = journeys.places.iter();
-    let places = places.map(|place| (place.kind.name(), &place.name));
+    let all = journeys.places.iter();
+    let places = all.map(|place| (place.kind.name(), &place.name));
     let zones = journeys.zones.iter().map(|one| ("zone", &one.name));
-    let entrances = scene.entrances.iter();
-    let entrances = entrances.map(|one| ("entrance", &one.name));
+    let doors = scene.entrances.iter();
+    let entrances = doors.map(|one| ("entrance", &one.name));
     let sources = scene.sources.iter().map(|one| ("source", &one.name));
     let all = places.chain(zones).chain(entrances).chain(sources);
     all.flat_map(|(kind, name)| [plain(name), plain(&named(kind, name))])
@@ -227,9 +227,9 @@ pub fn is_closed(simulation: &Simulation, k: usize) -> bool {
 /// The distinct goals of agents and sources without journeys, each with its groups. A source with a goal per agent
 /// contributes the goals of its first entry.
 pub fn goals(scene: &Scene, agents: &Agents) -> Vec<GoalOf> {
-    let own = agents.goal.iter().zip(&agents.group);
-    let own = own.map(|(&goal, &group)| (goal, group));
-    let entering = scene.sources.iter().flat_map(|source| {
+    let goals = agents.goal.iter().zip(&agents.group);
+    let own = goals.map(|(&goal, &group)| (goal, group));
+    let by_sources = scene.sources.iter().flat_map(|source| {
         let goals: Vec<Vector> = match source.goal {
             Goal::Point(goal) => vec![goal],
             Goal::Offset(offset) => {
@@ -239,11 +239,11 @@ pub fn goals(scene: &Scene, agents: &Agents) -> Vec<GoalOf> {
         };
         goals.into_iter().map(|goal| (goal, source.group))
     });
-    let through = scene.entrances.iter();
-    let through = through.map(|entrance| (entrance.goal, entrance.group));
-    let late = scene.latecomers.iter();
-    let late = late.map(|late| (late.agent.goal, late.agent.group));
-    let entering = entering.chain(through).chain(late);
+    let doors = scene.entrances.iter();
+    let through = doors.map(|entrance| (entrance.goal, entrance.group));
+    let arrivals = scene.latecomers.iter();
+    let late = arrivals.map(|late| (late.agent.goal, late.agent.group));
+    let entering = by_sources.chain(through).chain(late);
     let millimeters = |x: f64| (x * 1000.0).round() as i64;
     let mut different = BTreeMap::new();
     for (goal, group) in own.chain(entering) {

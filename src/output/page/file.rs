@@ -131,8 +131,8 @@ fn write_all(queue: &Receiver<Part>, mut file: File) -> io::Result<()> {
             Part::Bytes(class, bytes) => html::bytes(class, &compress_to_vec(&bytes, FAST)),
             Part::Frames(blocks, series) => {
                 let names = ["crowd", "forces"];
-                let blocks = names.into_iter().zip(blocks);
-                let blocks = blocks.map(|(name, block)| html::bytes(name, &block.compressed()));
+                let named = names.into_iter().zip(blocks);
+                let blocks = named.map(|(name, block)| html::bytes(name, &block.compressed()));
                 // The series come last: a part that is cut off is not read.
                 let series = compress_to_vec(series.to_string().as_bytes(), LEVEL);
                 blocks.chain([html::bytes("series", &series)]).collect()

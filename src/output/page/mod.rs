@@ -143,8 +143,8 @@ impl Page {
         }
         self.forces.begin_frame();
         for (id, terms) in &moment.forces {
-            let values = terms.iter().flat_map(|term| [term.x, term.y]);
-            let values = values.map(|value| whole(value, ACCELERATION));
+            let components = terms.iter().flat_map(|term| [term.x, term.y]);
+            let values = components.map(|value| whole(value, ACCELERATION));
             self.forces.add((*id).into(), [0, 0], values);
         }
     }
@@ -161,10 +161,10 @@ impl Page {
             true => vec![crowd, forces],
             false => vec![crowd],
         };
-        let series: Vec<_> = self.series.iter_mut().map(std::mem::take).collect();
+        let values: Vec<_> = self.series.iter_mut().map(std::mem::take).collect();
         let times = std::mem::take(&mut self.times);
         let events = std::mem::take(&mut self.events);
-        let series = json!({"times": times, "series": series, "events": events});
+        let series = json!({"times": times, "series": values, "events": events});
         self.file.write(Part::Frames(blocks.into(), series))
     }
 

@@ -75,9 +75,9 @@ impl PageOptions {
                 (plot.to_owned(), name, color)
             }));
         let group = |group: &Group| {
-            let journey = group.journey.map(usize::from);
-            let journey = journey.and_then(|k| scene.journeys.journeys.get(k));
-            let journey = journey.map(|journey| journey.name.clone());
+            let number = group.journey.map(usize::from);
+            let found = number.and_then(|k| scene.journeys.journeys.get(k));
+            let journey = found.map(|journey| journey.name.clone());
             [
                 group.name.clone(),
                 group.blend.name.clone(),

@@ -56,8 +56,8 @@ impl WalkableArea {
         }
         let obstacles = scene.walls.obstacles();
         let corners = obstacles.iter().flat_map(|obstacle| obstacle.points());
-        let everything = entries.iter().chain(&goals).chain(corners);
-        let everything = everything.chain([&view.min, &view.max]);
+        let inside = entries.iter().chain(&goals).chain(corners);
+        let everything = inside.chain([&view.min, &view.max]);
         let [min, max] = bounds(everything.copied()).unwrap_or_default();
         let margin = Vector::new(MARGIN, MARGIN);
         let (floors, obstacles) = outlines(obstacles);

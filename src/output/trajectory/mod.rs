@@ -144,11 +144,11 @@ impl Trajectory {
     /// # Errors
     /// The file cannot be written, for example because the disk is full. Frames already written are kept.
     pub fn log(&mut self, simulation: &Simulation) -> Result<(), TrajectoryError> {
-        let frame = simulation.frame().clock.frame();
-        if !frame.is_multiple_of(self.every) {
+        let number = simulation.frame().clock.frame();
+        if !number.is_multiple_of(self.every) {
             return Ok(());
         }
-        let frame = frame / self.every;
+        let frame = number / self.every;
         let written = self.sink.write(frame, &row::rows(simulation, frame));
         self.checked(written)
     }

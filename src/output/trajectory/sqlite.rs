@@ -84,8 +84,8 @@ impl Sqlite {
     }
 
     fn insert(&self, frame: u64, rows: &[Row<'_>]) -> rusqlite::Result<()> {
-        let insert = "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
-        let mut insert = self.connection.prepare(insert)?;
+        let into_rows = "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+        let mut insert = self.connection.prepare(into_rows)?;
         let frame = frame.cast_signed();
         for row in rows {
             let (at, facing) = (row.position(), row.orientation());

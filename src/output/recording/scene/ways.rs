@@ -45,8 +45,8 @@ pub fn log(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
     let Some(ways) = &scene.ways else {
         return Ok(());
     };
-    let corners = ways.floor.mesh.triangles().iter().flat_map(|t| t.corners);
-    let corners = corners.map(|k| ways.floor.mesh.point(k));
+    let numbers = ways.floor.mesh.triangles().iter().flat_map(|t| t.corners);
+    let corners = numbers.map(|k| ways.floor.mesh.point(k));
     let [low, high] = bounds(corners).unwrap_or_default();
     let grid = Grid::over([low, high], PIXEL.max((high - low).max() / SIDE));
     for (entity, to) in destinations(scene) {
