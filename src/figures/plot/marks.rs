@@ -191,9 +191,9 @@ fn draw_shapes<DB: DrawingBackend>(
     match mark {
         Mark::Discs(discs) => draw_discs(discs, panel, chart, ink)?,
         Mark::Area(corners, color) => {
-            let rim = corners.iter().chain(corners.first());
-            let rim = with_crossings(rim.map(|&corner| panel.place(corner)).collect());
-            let rim: Vec<Place> = rim.into_iter().map(bounded).collect();
+            let closed = corners.iter().chain(corners.first());
+            let path = with_crossings(closed.map(|&corner| panel.place(corner)).collect());
+            let rim: Vec<Place> = path.into_iter().map(bounded).collect();
             chart.draw_series([Polygon::new(rim, fill(*color))])?;
         }
         Mark::Line(points, style) => {

@@ -52,8 +52,8 @@ impl Sheet {
                 .filter(|title| !title.is_empty());
             both.cloned().collect::<Vec<_>>().join(", ")
         };
-        let panels = self.panels.iter().enumerate();
-        let panels = panels.map(|(k, panel)| Panel {
+        let numbered = self.panels.iter().enumerate();
+        let panels = numbered.map(|(k, panel)| Panel {
             title: title(k),
             ..panel.clone()
         });

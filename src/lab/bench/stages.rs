@@ -84,9 +84,9 @@ pub fn begin(stretch: &Stretch, plan: &Plan, profile: Option<&str>) -> Result<St
     let &(name, from, lasting) = stretch;
     let usual = MEASURED_WITH.iter().find(|(scene, _)| *scene == name);
     let profile = profile.or(usual.map(|(_, profile)| *profile));
-    let setting = profile.map(|profile| format!("profile={profile}").parse::<Setting>());
-    let setting = setting.transpose();
-    let setting = setting.map_err(|error| LabError::Data(error.to_string()))?;
+    let typed = profile.map(|profile| format!("profile={profile}").parse::<Setting>());
+    let parsed = typed.transpose();
+    let setting = parsed.map_err(|error| LabError::Data(error.to_string()))?;
     let scenario = scenario(name, setting)?;
     let mut simulation = Simulation::new(scenario.scene).map_err(failed)?;
     let (from, lasting) = plan.choose((from, lasting), QUICK_STRETCH);
@@ -104,12 +104,12 @@ pub fn begin(stretch: &Stretch, plan: &Plan, profile: Option<&str>) -> Result<St
 /// A scenario of the folder `scenarios/`, with the floor plan of the same name if there is one, and a setting.
 fn scenario(name: &str, setting: Option<Setting>) -> Result<Scenario, LabError> {
     let [file, plan] = ["json", "geojson"].map(|format| format!("{name}.{format}"));
-    let text = built_in(Path::new(&file));
-    let text = text.ok_or_else(|| LabError::Data(format!("{file} is not built in")))?;
+    let found = built_in(Path::new(&file));
+    let text = found.ok_or_else(|| LabError::Data(format!("{file} is not built in")))?;
     let mut settings = Vec::from_iter(setting);
     if let Some(text) = built_in(Path::new(&plan)) {
-        let floor = floor_plan::parse(text);
-        let floor = floor.map_err(|error| LabError::Data(format!("{plan}: {error}")))?;
+        let parsed = floor_plan::parse(text);
+        let floor = parsed.map_err(|error| LabError::Data(format!("{plan}: {error}")))?;
         settings.extend(Setting::floor_plan(&floor, &plan));
     }
     Scenario::parse(text, &file, &settings).map_err(|error| LabError::of(name, error))
@@ -222,11 +222,11 @@ impl Sizes {
 
     /// What the rows are.
     fn note(&self, plan: &Plan) -> String {
-        let stretches = busiest(plan).iter().map(|&(name, from, lasting)| {
+        let named = busiest(plan).iter().map(|&(name, from, lasting)| {
             let (from, lasting) = plan.choose((from, lasting), QUICK_STRETCH);
             format!("{name} {from}–{} s", from + lasting)
         });
-        let stretches = stretches.collect::<Vec<_>>().join(", ");
+        let stretches = named.collect::<Vec<_>>().join(", ");
         let (sway, swaying) = plan.choose((SWAY.1, SWAY.2), QUICK_STRETCH);
         let until = |frames: u64| PAPER_TIME_STEP * (self.before + frames) as f64;
         format!(
@@ -290,8 +290,8 @@ fn divided(started: Started, times: &[(StageTimes, f64)]) -> Divided {
         Range::of(&values)
     };
     let measuring: Vec<f64> = times.iter().map(|&(_, ms)| ms).collect();
-    let stages = Stage::ALL.map(|stage| (stage.name(), range(&|times| ms_of(times, stage))));
-    let stages = stages.into_iter().filter(|(_, range)| range.maximum > 0.0);
+    let all = Stage::ALL.map(|stage| (stage.name(), range(&|times| ms_of(times, stage))));
+    let stages = all.into_iter().filter(|(_, range)| range.maximum > 0.0);
     Divided {
         crowd: started.name,
         agents: started.simulation.frame().agents.len(),

@@ -117,10 +117,10 @@ impl<'a> Reader<'a> {
         let name = keys.name.clone().unwrap_or_else(|| shown(file));
         check_text(&name, &at("name"))?;
         let scene = self.scene(name.clone(), base, &keys.settings, place)?;
-        let scenario = self.scenes[scene].case.scenario();
-        let scenario = scenario.map_err(|error| Problem::new(place, error.to_string()))?;
-        let metrics = scenario.measurements.iter().flat_map(Measurement::names);
-        let metrics: Vec<String> = metrics.collect();
+        let read = self.scenes[scene].case.scenario();
+        let scenario = read.map_err(|error| Problem::new(place, error.to_string()))?;
+        let names = scenario.measurements.iter().flat_map(Measurement::names);
+        let metrics: Vec<String> = names.collect();
         for (k, wanted) in given.iter().enumerate() {
             let place = format!("{place}.values[{k}]");
             let quantity = &wanted.quantity;
@@ -176,8 +176,8 @@ impl<'a> Reader<'a> {
         place: &str,
     ) -> Result<usize, Problem> {
         let refused = |place: &str, error: String| Problem::new(place, error);
-        let document = base.scenario().map(|scenario| scenario.document);
-        let document = document.map_err(|error| refused(place, error.to_string()))?;
+        let read = base.scenario().map(|scenario| scenario.document);
+        let document = read.map_err(|error| refused(place, error.to_string()))?;
         let mut settings = Vec::new();
         for (inside, entries) in [
             ("settings".to_owned(), self.settings),
@@ -191,8 +191,8 @@ impl<'a> Reader<'a> {
                 }
             }
         }
-        let case = base.with(settings, self.memory);
-        let case = case.map_err(|error| refused(place, error.to_string()))?;
+        let changed = base.with(settings, self.memory);
+        let case = changed.map_err(|error| refused(place, error.to_string()))?;
         if let Some(known) = self
             .scenes
             .iter()
@@ -200,8 +200,8 @@ impl<'a> Reader<'a> {
         {
             return Ok(known);
         }
-        let scenario = case.scenario();
-        let scenario = scenario.map_err(|error| refused(place, error.to_string()))?;
+        let read = case.scenario();
+        let scenario = read.map_err(|error| refused(place, error.to_string()))?;
         self.scenes.push(Scene {
             name,
             case,
@@ -247,8 +247,8 @@ impl<'a> Reader<'a> {
 fn named<'s>(suite: &'s Suite, name: &str) -> Result<&'s SuiteCase, String> {
     let mut cases = suite.without_data();
     cases.find(|case| case.name == name).ok_or_else(|| {
-        let known = suite.without_data().map(|case| case.name.as_str());
-        let known: Vec<&str> = known.collect();
+        let names = suite.without_data().map(|case| case.name.as_str());
+        let known: Vec<&str> = names.collect();
         let near = suggestion(name, known.iter().copied());
         let (name, known) = (shown(name), known.join(", "));
         format!("no case is called `{name}`{near} (there are {known})")

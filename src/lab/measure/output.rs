@@ -52,8 +52,8 @@ impl Results {
     pub fn create(folder: &Path) -> Result<Self, StoreError> {
         fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
         let path = folder.join(AGENTS);
-        let begun = Replacement::begin(&path).map_err(|error| unwritten(&path, &error));
-        let (replacement, file) = begun?;
+        let opened = Replacement::begin(&path).map_err(|error| unwritten(&path, &error));
+        let (replacement, file) = opened?;
         let mut agents = BufWriter::new(file);
         let begun = writeln!(agents, "{AGENT_COLUMNS}");
         begun.map_err(|error| unwritten(&path, &error))?;

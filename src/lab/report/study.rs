@@ -47,11 +47,11 @@ pub fn of_study(gathered: &Gathered, file: &Path, folder: &Path) -> Result<Docum
         return Err(LabError::missing(&study.name, "finished run"));
     }
     let first = combinations.iter().filter_map(|one| one.cells.first());
-    let scenarios = first.map(|cell| {
+    let read = first.map(|cell| {
         let invalid = |error: scenario::ScenarioError| LabError::Data(error.to_string());
         cell.case.scenario().map_err(invalid)
     });
-    let scenarios: Vec<Scenario> = scenarios.collect::<Result<_, _>>()?;
+    let scenarios: Vec<Scenario> = read.collect::<Result<_, _>>()?;
     let names: Vec<String> = combinations
         .iter()
         .map(|one| name(one, &study.axes))
@@ -122,9 +122,9 @@ fn numbers(gathered: &Gathered, scenarios: &[Scenario]) -> Vec<Number> {
     let measurements = scenarios.iter().flat_map(|one| &one.measurements);
     let quantities = measurements.flat_map(|one| one.quantities());
     let known: BTreeMap<String, Quantity> = quantities.map(|one| (one.name.clone(), one)).collect();
-    let measured = gathered.numbers().into_iter();
-    let measured = measured.filter_map(|name| known.get(&name).cloned());
-    let measured = measured.map(
+    let names = gathered.numbers().into_iter();
+    let found = names.filter_map(|name| known.get(&name).cloned());
+    let measured = found.map(
         |Quantity {
              name,
              unit,
@@ -161,8 +161,8 @@ fn side_by_side(numbers: &[Number], combinations: &[Combination], names: &[Strin
     let mut columns = Table::of(numbers).column("result", |number| number.name.as_str());
     for (one, name) in combinations.iter().zip(names) {
         columns = columns.column(&format!("{name} ({} runs)", one.results.len()), |number| {
-            let values = one.results.iter().filter_map(|run| (number.value)(run));
-            let values: Vec<f64> = values.collect();
+            let of_runs = one.results.iter().filter_map(|run| (number.value)(run));
+            let values: Vec<f64> = of_runs.collect();
             let mean = spread(&values)?;
             let (count, all) = (values.len(), one.results.len());
             Some(match count < all {
@@ -225,19 +225,19 @@ fn figures(gathered: &Gathered, combinations: &[Combination], names: &[String]) 
             Block::figure("", part, caption)
         }));
     }
-    let all = combinations.iter().zip(names).enumerate();
-    let all = all.take(MOST_LINES).flat_map(|(k, (one, name))| {
+    let numbered = combinations.iter().zip(names).enumerate();
+    let drawn = numbered.take(MOST_LINES).flat_map(|(k, (one, name))| {
         let own = curves(&one.results).into_iter();
         own.map(move |curve| (curve, color(k), name.clone()))
     });
-    let all: Vec<(Curve, _, String)> = all.collect();
+    let all: Vec<(Curve, _, String)> = drawn.collect();
     let kinds = distinct(all.iter().map(|(curve, ..)| curve.name.as_str()));
-    let panels = kinds.iter().filter_map(|kind| {
-        let own = all.iter().filter(|(curve, ..)| curve.name == *kind);
-        let own = own.map(|(curve, color, name)| (curve, *color, name.clone()));
+    let filled = kinds.iter().filter_map(|kind| {
+        let lines = all.iter().filter(|(curve, ..)| curve.name == *kind);
+        let own = lines.map(|(curve, color, name)| (curve, *color, name.clone()));
         panel(&own.collect::<Vec<_>>())
     });
-    let panels: Vec<_> = panels.collect();
+    let panels: Vec<_> = filled.collect();
     if !panels.is_empty() {
         let columns = panels.len().min(2);
         let sheet = Sheet::new("", columns, [220.0, 160.0], with_legend(panels, columns));
