@@ -125,8 +125,7 @@ fn open(path: &Path, options: &ReadOptions) -> Result<Input, Failure> {
         Some("rrd") => {
             let reason = "the recording has no results: its run did not end, or an earlier version wrote it; record \
                           the run again";
-            let recorded = Recorded::read(path)?;
-            let report = recorded.report().map(str::to_owned);
+            let report = Recorded::read(path)?.report().map(str::to_owned);
             report.ok_or_else(|| refused(reason.to_owned()))?
         }
         _ => {

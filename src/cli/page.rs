@@ -58,11 +58,10 @@ pub fn run(options: &PageOptions) -> Result<(), Failure> {
     let mut run = open(options, &mut outputs)?;
     outputs.writes("--out", &out, Manner::InPlace);
     outputs.check()?;
-    let packaged = options
+    let viewer = options
         .page_viewer
         .as_deref()
-        .map(EmbeddedViewer::in_package);
-    let viewer = packaged
+        .map(EmbeddedViewer::in_package)
         .transpose()?
         .map(|viewer| (viewer, options.run.as_path()));
     let frames = rayon::scope(|_| write(&mut run, &out, viewer.as_ref()))?;

@@ -169,8 +169,7 @@ fn judge(asked: &Asked, options: &SuiteOptions) -> Result<(), Failure> {
     if let Some(file) = status
         && let Some(status) = Status::updated(&file, &report)
     {
-        let written = write_whole(&file, |whole| whole.write_all(status.as_bytes()));
-        written.map_err(|error| {
+        write_whole(&file, |whole| whole.write_all(status.as_bytes())).map_err(|error| {
             Failure::Output(format!("cannot write {}: {error}", file.display()))
         })?;
     }

@@ -63,8 +63,7 @@ pub fn added(mut error: clap::Error, command: &Command, typed: &[OsString]) -> c
         }
         _ => return error,
     };
-    let escaped = words.iter().map(|tip| printable(tip).into());
-    let mut tips: Vec<StyledStr> = escaped.collect();
+    let mut tips: Vec<StyledStr> = words.iter().map(|tip| printable(tip).into()).collect();
     if let Some(ContextValue::StyledStrs(own)) = error.remove(ContextKind::Suggested) {
         // Nothing here has a name that begins with dashes.
         let is_useful =
@@ -115,8 +114,7 @@ fn has(command: &Command, option: &str) -> bool {
 /// What says which commands have an option. The commands of built-in scenarios have those of `run`.
 fn owners(option: &str, program: &Command) -> Option<String> {
     let shown = program.get_subcommands().filter(|one| !one.is_hide_set());
-    let owners = shown.filter(|one| has(one, option));
-    let commands = owners.map(Command::get_name);
+    let commands = shown.filter(|one| has(one, option)).map(Command::get_name);
     let names: Vec<&str> = commands
         .filter(|name| Source::shipped(name).is_none())
         .collect();

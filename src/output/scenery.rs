@@ -67,13 +67,10 @@ pub fn lines(place: &Place) -> Vec<Vector> {
         Kind::Exit(exit) => exit.line.to_vec(),
         Kind::Line(line) => line.to_vec(),
         Kind::Door(door) => door.line.to_vec(),
-        Kind::Disk { at, within } => {
-            let turns =
-                (0..=CIRCLE).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(CIRCLE));
-            turns
-                .map(|turn| at + Vector::new(turn.cos(), turn.sin()) * *within)
-                .collect()
-        }
+        Kind::Disk { at, within } => (0..=CIRCLE)
+            .map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(CIRCLE))
+            .map(|turn| at + Vector::new(turn.cos(), turn.sin()) * *within)
+            .collect(),
         Kind::Waiting(waiting) => closed(waiting.area.points()),
         Kind::Queue(queue) => queue.path.clone(),
     }
@@ -130,8 +127,7 @@ fn names(scene: &Scene) -> BTreeSet<String> {
     let all = journeys.places.iter();
     let places = all.map(|place| (place.kind.name(), &place.name));
     let zones = journeys.zones.iter().map(|one| ("zone", &one.name));
-    let doors = scene.entrances.iter();
-    let entrances = doors.map(|one| ("entrance", &one.name));
+    let entrances = scene.entrances.iter().map(|one| ("entrance", &one.name));
     let sources = scene.sources.iter().map(|one| ("source", &one.name));
     let all = places.chain(zones).chain(entrances).chain(sources);
     all.flat_map(|(kind, name)| [plain(name), plain(&named(kind, name))])
@@ -199,8 +195,7 @@ pub fn hatching(ring: &Ring, apart: f64) -> Vec<[Vector; 2]> {
     let mut at = (low.x / apart).ceil() * apart;
     while at < high.x {
         let ends = corners.iter().cycle().skip(1);
-        let edges = corners.iter().zip(ends);
-        let crossing = edges.filter_map(|(a, b)| {
+        let crossing = corners.iter().zip(ends).filter_map(|(a, b)| {
             let [from, to] = [a, b].map(|p| p.dot(&across) - at);
             let crosses = (from > 0.0) != (to > 0.0);
             crosses.then(|| (a + (b - a) * (from / (from - to))).dot(&along))

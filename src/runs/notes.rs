@@ -144,11 +144,10 @@ fn early(run: &Run) -> Option<String> {
         .filter(|_| run.end == Some(End::Idle))?;
     let now = simulation.frame().clock.time();
     let journeys = &simulation.scene().journeys;
-    let next = journeys
+    let opens = journeys
         .changes
         .iter()
-        .find(|change| change.at > now && change.kind != ChangeKind::Close);
-    let opens = next
+        .find(|change| change.at > now && change.kind != ChangeKind::Close)
         .filter(|_| simulation.frame().agents.count_present() > 0)
         .map(|change| {
             let name = shown(&journeys.places[usize::from(change.place)].name);

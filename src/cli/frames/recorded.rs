@@ -83,8 +83,7 @@ impl Film for Recorded {
     fn crowd(&self, k: usize) -> Crowd {
         let crowd = self.crowd(k);
         let times: Vec<f64> = self.times().collect();
-        let near = [k.saturating_sub(1), (k + 1).min(times.len() - 1)];
-        let others = near.map(|k| {
+        let others = [k.saturating_sub(1), (k + 1).min(times.len() - 1)].map(|k| {
             let other = self.crowd(k);
             let places = other.ids.into_iter().zip(other.positions);
             (times[k], places.collect::<HashMap<_, _>>())

@@ -203,14 +203,12 @@ impl Table {
     /// Never in practice: the rows are written to memory and have the same length.
     pub fn csv(&self) -> Result<Vec<u8>, csv::Error> {
         let heads = self.heads.iter().flat_map(|head| {
-            let own = head.suffixes.as_ref().map_or(&[""][..], |both| both);
-            let suffixes = own.iter();
+            let suffixes = head.suffixes.as_ref().map_or(&[""][..], |both| both).iter();
             suffixes.map(|suffix| format!("{}{suffix}", head.name))
         });
         let number = |number: &f64| number.to_string();
         let rows = self.rows.iter().map(|row| {
-            let cells = row.iter().zip(&self.heads);
-            let fields = cells.flat_map(|(cell, head)| {
+            let fields = row.iter().zip(&self.heads).flat_map(|(cell, head)| {
                 let (first, second) = match cell {
                     Cell::Text(text) => (text.clone(), None),
                     Cell::Number(value) => (number(value), None),

@@ -126,8 +126,7 @@ impl Crowd {
             };
             grid.positions(seed, k * columns).collect::<Vec<_>>()
         };
-        let places = (0..rows).flat_map(row);
-        places.take(self.agents as usize).collect()
+        (0..rows).flat_map(row).take(self.agents as usize).collect()
     }
 
     /// The crowd after `frames` frames.

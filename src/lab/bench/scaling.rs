@@ -212,8 +212,7 @@ fn table(rows: &[Size]) -> Table {
 
 fn picture(rows: &[Size]) -> Sheet {
     let point = |row: &Size| (f64::from(row.agents), row.ns_per_agent_frame);
-    let kinds = KINDS.iter().enumerate();
-    let drawn = kinds.flat_map(|(k, kind)| {
+    let drawn = KINDS.iter().enumerate().flat_map(|(k, kind)| {
         let own = rows.iter().filter(|row| row.crowd == kind.name);
         medians(&own.map(point).collect::<Vec<_>>(), color(k), kind.name)
     });

@@ -135,8 +135,7 @@ fn color(set: Set) -> Rgb {
 
 /// Round numbers from −`far` to `far`.
 fn ticks(far: f64) -> impl Iterator<Item = (f64, String)> {
-    let steps = [1.0, 2.0, 5.0];
-    let fitting = steps.into_iter().find(|step| far / step < 6.0);
+    let fitting = [1.0, 2.0, 5.0].into_iter().find(|step| far / step < 6.0);
     let step = fitting.unwrap_or(5.0);
     let most = (far / step) as i32;
     let values = (-most..=most).map(move |k| f64::from(k) * step);

@@ -91,8 +91,7 @@ impl Calibration {
             None => Ok(other.to_vec()),
         };
         let own = seeds(keys.seeds.as_ref(), &[1])?;
-        let read = seeds(keys.final_seeds.as_ref(), &own);
-        let final_seeds = read.map_err(|problem| Problem {
+        let final_seeds = seeds(keys.final_seeds.as_ref(), &own).map_err(|problem| Problem {
             path: format!("final_{}", problem.path),
             ..problem
         })?;

@@ -93,8 +93,7 @@ fn places(measured: &Measured) -> Vec<Mark> {
         let [a, b, c, d] = diagram.region?.corners();
         Some((vec![a, b, c, d, a], [0, 0], format!("region {}", k + 1)))
     });
-    let numbered = measured.crossings.iter().enumerate();
-    let lines = numbered.map(|(k, crossings)| {
+    let lines = measured.crossings.iter().enumerate().map(|(k, crossings)| {
         let ends = vec![crossings.line.start, crossings.line.end];
         (ends, [-1, 0], format!("line {}", k + 1))
     });

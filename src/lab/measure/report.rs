@@ -161,10 +161,8 @@ impl Report<'_> {
 
 /// Two rows per line: forward and backward.
 fn flows(crossings: &[Crossings], flow_of: Passages) -> Table {
-    let lines = crossings.iter().zip(1_usize..);
-    let directed = lines.flat_map(|(line, number)| {
-        let directions = [(1, "forward"), (-1, "backward")];
-        directions.map(|(way, name)| (number, name, line.way(way, flow_of)))
+    let directed = crossings.iter().zip(1_usize..).flat_map(|(line, number)| {
+        [(1, "forward"), (-1, "backward")].map(|(way, name)| (number, name, line.way(way, flow_of)))
     });
     let ways: Vec<(usize, &str, Way)> = directed.collect();
     let passages = |way: &Way| {

@@ -98,8 +98,7 @@ impl Safety {
         }
         let is_due = |moment: &&Moment| (moment.frame - self.first).rem_euclid(self.every) == 0;
         let due: Vec<&Moment> = moments.iter().filter(is_due).collect();
-        let computed = due.par_iter().map(|moment| local(moment, site));
-        let local: Vec<Vec<Local>> = computed.collect();
+        let local: Vec<Vec<Local>> = due.par_iter().map(|moment| local(moment, site)).collect();
         for (moment, people) in due.into_iter().zip(&local) {
             let last = self.samples.last().map(|last| last.frame);
             if last.is_some_and(|last| moment.frame - last > self.every) {

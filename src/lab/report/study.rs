@@ -123,8 +123,7 @@ fn numbers(gathered: &Gathered, scenarios: &[Scenario]) -> Vec<Number> {
     let quantities = measurements.flat_map(|one| one.quantities());
     let known: BTreeMap<String, Quantity> = quantities.map(|one| (one.name.clone(), one)).collect();
     let names = gathered.numbers().into_iter();
-    let found = names.filter_map(|name| known.get(&name).cloned());
-    let measured = found.map(
+    let measured = names.filter_map(|name| known.get(&name).cloned()).map(
         |Quantity {
              name,
              unit,

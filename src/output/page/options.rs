@@ -48,8 +48,7 @@ pub struct PageOptions {
 impl PageOptions {
     /// A page of people of whom only positions, speeds and densities are known.
     pub fn watched() -> Self {
-        let crowd = CROWD.iter().zip(PLOTS);
-        let series = crowd.map(|((_, name, color), plot)| {
+        let series = CROWD.iter().zip(PLOTS).map(|((_, name, color), plot)| {
             let name = name.split_once(" [").map_or(*name, |(name, _)| name);
             (plot.to_owned(), name.to_owned(), *color)
         });

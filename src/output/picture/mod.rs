@@ -323,8 +323,7 @@ impl<'a> Picture<'a> {
     pub fn plan(&self) -> ([Vector; 2], Vec<Mark>, Vec<Mark>) {
         let shown = self.shown();
         let frame = Frame::around(shown, ALONE, MARGIN);
-        let empty = Labels::new(frame.screen(), self.avoided(&frame));
-        let mut labels = empty.among_areas(self.scene);
+        let mut labels = Labels::new(frame.screen(), self.avoided(&frame)).among_areas(self.scene);
         let places = scene::places(self, &frame, &mut labels);
         let ground = scene::ground(self.scene).into_iter();
         let below = ground.chain(scene::tints(self.scene)).collect();

@@ -59,11 +59,10 @@ impl DebugAgents {
             Self::None => Vec::new(),
             // A search for each is faster than a test of every agent.
             Self::Ids(ids) => ids.iter().filter_map(|&id| agents.index_of(id)).collect(),
-            Self::Region(_) | Self::All => {
-                let own = (0..agents.len()).filter(|&i| self.includes(simulation, i));
-                own.chain(also.filter_map(|&id| agents.index_of(id)))
-                    .collect()
-            }
+            Self::Region(_) | Self::All => (0..agents.len())
+                .filter(|&i| self.includes(simulation, i))
+                .chain(also.filter_map(|&id| agents.index_of(id)))
+                .collect(),
         };
         candidates.sort_unstable_by_key(|&i| agents.id[i]);
         candidates.dedup();

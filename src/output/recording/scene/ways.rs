@@ -72,13 +72,12 @@ fn log_field(stream: &RecordingStream, entity: EntityPath, field: &WayField) -> 
         (band as u8 + 1, name, Rgba32::from_rgb(r, g, b))
     };
     let purple = Rgba32::from_rgb(120, 60, 130);
-    let others = [
+    let classes: Vec<Class> = [
         (0, "no way".to_owned(), Rgba32::TRANSPARENT),
         (border, "another next corner".to_owned(), purple),
-    ];
-    let classes: Vec<Class> = others
-        .into_iter()
-        .chain((0..bands.count).map(of_band))
-        .collect();
+    ]
+    .into_iter()
+    .chain((0..bands.count).map(of_band))
+    .collect();
     log_classes(stream, entity, (&field.grid, pixels), &classes, -4.0)
 }

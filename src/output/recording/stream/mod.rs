@@ -90,8 +90,7 @@ impl Output {
                 flush_tick: if is_live { VIEWER_TICK } else { FILE_TICK },
                 ..ChunkBatcherConfig::DEFAULT
             };
-            let named = RecordingStreamBuilder::new(application(options)?);
-            let plain = named.batcher_config(batches);
+            let plain = RecordingStreamBuilder::new(application(options)?).batcher_config(batches);
             // In a live viewer, a second run with the same id would become part of the first.
             let builder = if is_live {
                 plain
