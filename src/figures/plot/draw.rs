@@ -8,9 +8,8 @@ use super::error::Drawn;
 use super::font::{LINE, lines, width_of};
 use super::ink::{Ink, fill};
 use super::layout::{self, BAR_WIDTH, LABEL, Layout, PAD, SAMPLE, TICK, TITLE, height_of};
-use super::{
-    Axis, BLACK, Cells, ColorBar, Corner, Mark, NO_DATA, Panel, Print, Sheet, Style, marks,
-};
+use super::marks::{self, Canvas};
+use super::{Axis, BLACK, Cells, ColorBar, Corner, Mark, NO_DATA, Panel, Print, Sheet, Style};
 
 const RIM: f64 = 0.6; // width of the lines around a panel
 const LARGEST_DOT: f64 = 3.6; // radius of a dot in a legend
@@ -135,9 +134,9 @@ impl<DB: DrawingBackend> Page<'_, DB> {
     fn marks(&self, panel: &Panel, (corner, size): Rect) -> Drawn {
         let whole = self.root.clone();
         let area = whole.shrink(self.ink.at(corner), self.ink.at(size));
-        let mut chart = marks::chart_on(&area)?;
+        let mut canvas = Canvas::on(&area, panel, self.ink)?;
         let mut marks = panel.marks.iter();
-        marks.try_for_each(|mark| marks::draw(mark, panel, &mut chart, self.ink))
+        marks.try_for_each(|mark| canvas.draw(mark))
     }
 
     fn x_axis(&self, axis: &Axis, [left, y]: [f64; 2], width: f64) -> Drawn {
