@@ -39,19 +39,19 @@ pub fn scenes() -> Vec<&'static str> {
 pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     let wanted = |name: &str| options.scene.is_empty() || options.scene.iter().any(|s| s == name);
     let in_time = |scene: &Scene| !(options.quick && scene.is_long && options.scene.is_empty());
-    let scenes = SCENES
+    let chosen = SCENES
         .iter()
         .filter(|scene| wanted(scene.name) && in_time(scene));
     let plan = Plan {
-        scenes: scenes.copied().collect(),
+        scenes: chosen.copied().collect(),
         knobs: options.knob.clone(),
         quick: options.quick,
     };
     // The table of choices is of all scenes.
     let updated = |name: &str| name != CHOICES || options.scene.is_empty();
     let scenes = plan.scenes.iter().map(|scene| scene.name);
-    let tables = scenes.clone().chain([CHOICES]).filter(|name| updated(name));
-    let tables: Vec<&str> = tables.collect();
+    let updates = scenes.clone().chain([CHOICES]).filter(|name| updated(name));
+    let tables: Vec<&str> = updates.collect();
     let store = options.cases.store(&tables, &file_names(scenes))?;
     let report = accuracy(&plan, &store, &Watch::new())?;
     options.cases.give_parts(&report.findings()?, updated)

@@ -285,10 +285,10 @@ pub struct PrintOptions {
 impl PrintOptions {
     /// Prints all pictures of the program like this.
     pub fn apply(&self) {
-        let print = self.paper.map_or_else(Print::default, Print::paper);
+        let plain = self.paper.map_or_else(Print::default, Print::paper);
         let print = Print {
-            dpi: self.dpi.unwrap_or(print.dpi),
-            ..print
+            dpi: self.dpi.unwrap_or(plain.dpi),
+            ..plain
         };
         print.for_all_sheets();
     }

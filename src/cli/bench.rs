@@ -136,9 +136,9 @@ pub fn about() -> String {
 
 pub fn run(options: &BenchOptions) -> Result<(), Failure> {
     let mut benchmarks = BENCHMARKS.iter();
-    let benchmark = benchmarks.find(|benchmark| benchmark.name == options.what);
+    let named = benchmarks.find(|benchmark| benchmark.name == options.what);
     let unknown = || Failure::Input(format!("{}: no benchmark", options.what));
-    let benchmark = benchmark.ok_or_else(unknown)?;
+    let benchmark = named.ok_or_else(unknown)?;
     let timing = &options.timing;
     timing.run(benchmark.name, |plan, say| benchmark.measure(plan, say))
 }

@@ -83,8 +83,8 @@ pub fn run(options: &CalibrateOptions) -> Result<(), Failure> {
             || listed(&calibration),
         );
     }
-    let folder = options.out.clone();
-    let folder = folder.unwrap_or_else(|| PathBuf::from(&calibration.name));
+    let given = options.out.clone();
+    let folder = given.unwrap_or_else(|| PathBuf::from(&calibration.name));
     let mut outputs = options.replace.outputs(&folder);
     if options.file.exists() {
         outputs.reads("the study", &options.file);
@@ -151,8 +151,8 @@ fn listed_json(calibration: &Calibration) -> Value {
 
 /// The number of runs if the search does not converge early, and the time that they take on one core, seconds.
 fn most_runs(calibration: &Calibration) -> [f64; 2] {
-    let screening = calibration.screening;
-    let screening = screening.map_or(0, |of| of.trajectories * (calibration.parameters.len() + 1));
+    let search = calibration.screening;
+    let screening = search.map_or(0, |of| of.trajectories * (calibration.parameters.len() + 1));
     let dimension = calibration.free().len();
     let generations = calibration.search.generations * calibration.population(dimension);
     let points = (1 + screening + generations + 2 * dimension) * calibration.seeds.len();

@@ -12,8 +12,9 @@ use super::failure::Failure;
 use super::inputs::tracks;
 use super::terminal::talk;
 use super::values::frame_rate;
-use lab::differences::{Differences, NotAReport, names as file_names, of_reports, of_tracks};
+use lab::differences::{NotAReport, names as file_names, of_reports, of_tracks};
 use lab::estimate::{compared, is_answer};
+use output::document::Findings;
 use output::recording::Recorded;
 use runs::outputs::Outputs;
 use scenario::input;
@@ -63,61 +64,54 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
     let (a, b) = (open(&options.a, &read)?, open(&options.b, &read)?);
     let names = paths.map(|path| path.display().to_string());
     let [first, second] = names.each_ref().map(String::as_str);
-    let differences: Differences = match (&a, &b) {
-        (Input::Report(a), Input::Report(b)) if is_answer(a) && is_answer(b) => {
-            let compared = compared([(first, a), (second, b)]);
-            let compared = compared.map_err(|error| Failure::Input(error.to_string()))?;
-            return options
-                .files
-                .give(&compared.findings()?, options.json, None);
-        }
-        (Input::Report(a), Input::Report(b)) if is_answer(a) || is_answer(b) => {
-            let (is, is_not) = if is_answer(a) {
-                (first, second)
-            } else {
-                (second, first)
-            };
-            return Err(Failure::Input(format!(
-                "{is} is an estimate, {is_not} is not; give two of a kind"
-            )));
-        }
-        (Input::Report(a), Input::Report(b)) => {
-            let invalid = |error: NotAReport| {
-                let (name, report) = [(first, a), (second, b)][error.which];
-                let scenario = if is_scenario(report) {
-                    "a scenario, "
-                } else {
-                    ""
-                };
-                Failure::Input(format!("{name}: {scenario}{error}"))
-            };
-            let differences = of_reports(a, b).map_err(invalid)?;
-            for (path, report) in paths.into_iter().zip([a, b]) {
-                if report.get("settings").is_none() {
-                    let file = path.display();
-                    talk(&format!(
-                        "note: {file} has no settings: an earlier version wrote it; run it again to compare them"
-                    ));
-                }
-            }
-            differences
-        }
-        (Input::Tracks(a), Input::Tracks(b)) => of_tracks(a, b),
-        _ => {
-            let is_first = matches!(a, Input::Report(_));
-            let (result, tracks) = if is_first {
-                (first, second)
-            } else {
-                (second, first)
-            };
-            return Err(Failure::Input(format!(
-                "{result} is the result of a run, {tracks} has trajectories; give two of a kind"
-            )));
-        }
+    let mixed = |result: &str, tracks: &str| {
+        let what = format!("{result} is the result of a run, {tracks} has trajectories");
+        Failure::Input(format!("{what}; give two of a kind"))
     };
-    options
-        .files
-        .give(&differences.findings()?, options.json, None)
+    let findings = match (&a, &b) {
+        (Input::Report(a), Input::Report(b)) => of_results([(first, a), (second, b)])?,
+        (Input::Tracks(a), Input::Tracks(b)) => of_tracks(a, b).findings()?,
+        (Input::Report(_), Input::Tracks(_)) => return Err(mixed(first, second)),
+        (Input::Tracks(_), Input::Report(_)) => return Err(mixed(second, first)),
+    };
+    options.files.give(&findings, options.json, None)
+}
+
+/// The differences between two results of runs or two estimates.
+fn of_results(results: [(&str, &Value); 2]) -> Result<Findings, Failure> {
+    let [(first, a), (second, b)] = results;
+    let mixed = |is: &str, is_not: &str| {
+        let what = format!("{is} is an estimate, {is_not} is not");
+        Err(Failure::Input(format!("{what}; give two of a kind")))
+    };
+    match [is_answer(a), is_answer(b)] {
+        [true, true] => {
+            let compared = compared(results);
+            let compared = compared.map_err(|error| Failure::Input(error.to_string()))?;
+            return Ok(compared.findings()?);
+        }
+        [true, false] => return mixed(first, second),
+        [false, true] => return mixed(second, first),
+        [false, false] => {}
+    }
+    let invalid = |error: NotAReport| {
+        let (name, report) = results[error.which];
+        let scenario = match is_scenario(report) {
+            true => "a scenario, ",
+            false => "",
+        };
+        Failure::Input(format!("{name}: {scenario}{error}"))
+    };
+    let differences = of_reports(a, b).map_err(invalid)?;
+    for (file, _) in results
+        .iter()
+        .filter(|(_, report)| report.get("settings").is_none())
+    {
+        talk(&format!(
+            "note: {file} has no settings: an earlier version wrote it; run it again to compare them"
+        ));
+    }
+    Ok(differences.findings()?)
 }
 
 /// Reads a file of any kind.
@@ -131,8 +125,7 @@ fn open(path: &Path, options: &ReadOptions) -> Result<Input, Failure> {
         Some("rrd") => {
             let reason = "the recording has no results: its run did not end, or an earlier version wrote it; record \
                           the run again";
-            let recorded = Recorded::read(path)?;
-            let report = recorded.report().map(str::to_owned);
+            let report = Recorded::read(path)?.report().map(str::to_owned);
             report.ok_or_else(|| refused(reason.to_owned()))?
         }
         _ => {

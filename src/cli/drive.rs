@@ -14,7 +14,6 @@ use super::reported::{Typed, Watch, complete, findings};
 use super::terminal::{talk, tell};
 use super::watch::Progress;
 use super::{memory, notes, results};
-use ::output::document::{Block, Document, Findings};
 use lab::machine::main_memory;
 use lab::report::Watched;
 use runs::case::Source;
@@ -74,11 +73,11 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
             options.file.display()
         ));
     }
-    let until = options.output.until.map(|secs| {
+    let typed = options.output.until.map(|secs| {
         let text = format!("duration_secs={secs}");
         setting(&text).map(|setting| setting.typed_as(format!("--until {secs}")))
     });
-    let until: Option<Setting> = until.transpose()?;
+    let until: Option<Setting> = typed.transpose()?;
     let draft = checkpoint.draft(until.as_slice())?;
     let (scenario, _) = draft.within(main_memory(), memory::of_writing(&options.output))?;
     let resumable = until.is_some().then(|| checkpoint.scenario(&[]).ok());
@@ -168,13 +167,14 @@ fn go_on(
     tell(
         program.json,
         || results::json(&run),
-        || results::text(&run, options.verbose),
+        || results::document(&run, options.verbose).text(),
     )?;
     finished.into_iter().collect::<Result<(), _>>()?;
     if options.files.are_given() {
         options.files.save(&match &report {
             Some((watched, typed)) => findings(&run, watched, typed)?,
-            None => without_pictures(&run)?,
+            // The beginning was not seen: as on the terminal.
+            None => results::findings(&run, results::document(&run, false))?,
         })?;
     }
     match interrupt.exit_code() {
@@ -184,12 +184,4 @@ fn go_on(
         }
         _ => Ok(()),
     }
-}
-
-/// The results of a run whose beginning was not seen: as on the terminal.
-fn without_pictures(run: &Run) -> Result<Findings, Failure> {
-    let text = results::text(run, false);
-    let lines = text.lines().map(str::to_owned).collect();
-    let title = format!("Results of the run {}", run.scenario.name);
-    results::findings(run, Document::of(title, vec![Block::Code(lines)]))
 }

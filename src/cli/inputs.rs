@@ -71,8 +71,8 @@ pub fn settings(
     let mut last = None;
     for (flag, key, value) in flags {
         let Some(value) = value else { continue };
-        let setting = setting(&format!("{key}={value}"))?;
-        let setting = setting.typed_as(format!("{flag} {}", shown(&value)));
+        let made = setting(&format!("{key}={value}"))?;
+        let setting = made.typed_as(format!("{flag} {}", shown(&value)));
         if flag == "--at" {
             last = Some(setting); // applied last: --at beyond the end moves the end, even one given by --set
             continue;
@@ -96,8 +96,8 @@ pub fn settings(
 
 /// Reads the plan of `--geometry`.
 fn floor_plan(path: &Path) -> Result<FloorPlan, Failure> {
-    let plan = floor_plan::read(path);
-    let plan = plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?;
+    let read = floor_plan::read(path);
+    let plan = read.map_err(|error| Failure::Input(format!("--geometry {error}")))?;
     for note in &plan.notes {
         talk(&format!("note: --geometry {}: {note}", path.display()));
     }
@@ -138,8 +138,8 @@ pub fn site(path: &Path, geometry: Option<&Path>, tracks: &Tracks) -> Result<Sit
             return Err(own(path, &problem));
         }
     };
-    let solids = plan.map_or(Ok(Vec::new()), FloorPlan::solids);
-    let solids = solids.map_err(|error| Failure::Input(format!("the floor plan: {error}")))?;
+    let cut = plan.map_or(Ok(Vec::new()), FloorPlan::solids);
+    let solids = cut.map_err(|error| Failure::Input(format!("the floor plan: {error}")))?;
     Ok(Site::new(solids))
 }
 

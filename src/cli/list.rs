@@ -36,10 +36,10 @@ const TABLE: &str = "values";
 pub fn measurements(document: &UpdateOptions, as_json: bool) -> Result<(), Failure> {
     document.check(None, &[TABLE])?;
     let all = Measurement::all_quantities();
-    let rows = all
+    let pairs = all
         .iter()
         .flat_map(|(of, own)| own.iter().map(move |one| (of, one)));
-    let rows: Vec<(&String, &Quantity)> = rows.collect();
+    let rows: Vec<(&String, &Quantity)> = pairs.collect();
     let table = Table::of(&rows)
         .column("measurement", |(of, _)| format!("`{of}`"))
         .column("value", |(_, one)| format!("`{}`", one.name))
@@ -58,10 +58,10 @@ pub fn measurements(document: &UpdateOptions, as_json: bool) -> Result<(), Failu
 /// The built-in scenarios, the profiles of the paper, and the calibrated ones: names and descriptions.
 fn lists() -> [Vec<(&'static str, String)>; 3] {
     let scenarios = SHIPPED.iter().map(|of| (of.name, of.description()));
-    let paper = NAMES.into_iter().zip(ABOUT);
-    let paper = paper.map(|(name, about)| (name, about.to_owned()));
-    let calibrated = calibrated::all().iter();
-    let calibrated = calibrated.map(|of| (of.name, of.about.to_owned()));
+    let of_paper = NAMES.into_iter().zip(ABOUT);
+    let paper = of_paper.map(|(name, about)| (name, about.to_owned()));
+    let fitted = calibrated::all().iter();
+    let calibrated = fitted.map(|of| (of.name, of.about.to_owned()));
     [scenarios.collect(), paper.collect(), calibrated.collect()]
 }
 
@@ -98,21 +98,21 @@ fn all_settings() -> Value {
 }
 
 fn settings_text() -> String {
-    let mut text = String::new();
-    for setting in settings() {
+    let setting = |setting: SettingDoc| {
         let default = setting
             .default
             .map(|default| format!("default: {default}; "));
         let values = format!("{}{}", default.unwrap_or_default(), setting.range);
-        text += &entry(setting.key, 0, setting.description);
-        text += &entry("", 2, &values);
-    }
-    text += "\nKeys of nested objects (? = optional; `sandbox list --schema` describes them):\n";
-    for (path, keys) in nested_settings() {
-        text += &entry(&path, 0, &keys);
-    }
-    text + "\nA dotted path sets a value inside a list or object: --set sources.0.rows=50\n\
-            Parameters set this way apply to all profiles of the scenario.\n"
+        entry(setting.key, 0, setting.description) + &entry("", 2, &values)
+    };
+    let settings: String = settings().into_iter().map(setting).collect();
+    let paths = nested_settings().into_iter();
+    let nested: String = paths.map(|(path, keys)| entry(&path, 0, &keys)).collect();
+    format!(
+        "{settings}\nKeys of nested objects (? = optional; `sandbox list --schema` describes them):\n{nested}\n\
+         A dotted path sets a value inside a list or object: --set sources.0.rows=50\n\
+         Parameters set this way apply to all profiles of the scenario.\n"
+    )
 }
 
 /// `sandbox list --schema`.
@@ -123,18 +123,18 @@ pub fn schema() -> Result<(), Failure> {
 /// A name with a text beside it, broken into lines that are indented by `indent` spaces.
 fn entry(name: &str, indent: usize, text: &str) -> String {
     let indent = " ".repeat(indent);
-    let mut lines = vec![indent.clone()];
+    let mut broken = vec![indent.clone()];
     for word in text.split(' ') {
-        match lines.last_mut() {
+        match broken.last_mut() {
             Some(line) if line.chars().count() + word.chars().count() < WIDTH => {
                 *line += word;
                 *line += " ";
             }
-            _ => lines.push(format!("{indent}{word} ")),
+            _ => broken.push(format!("{indent}{word} ")),
         }
     }
     let names = std::iter::once(name).chain(std::iter::repeat(""));
-    let lines = names.zip(lines.iter().map(|line| line.trim_end()));
+    let lines = names.zip(broken.iter().map(|line| line.trim_end()));
     lines
         .map(|(name, line)| format!("{name:<20} {line}\n"))
         .collect()

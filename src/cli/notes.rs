@@ -17,8 +17,8 @@ pub fn print(run: &Run) {
 /// Prints which agents of `--debug-agents` never entered.
 pub fn print_absent(record: &RecordOptions, simulation: &Simulation) {
     let entered = simulation.frame().agents.entered();
-    let asked = record.debug_agents.as_deref().map(ids);
-    let asked = asked.and_then(Result::ok).unwrap_or_default();
+    let typed = record.debug_agents.as_deref().map(ids);
+    let asked = typed.and_then(Result::ok).unwrap_or_default();
     let absent: Vec<String> = asked
         .iter()
         .filter(|&&id| id >= entered)

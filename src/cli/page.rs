@@ -61,8 +61,7 @@ pub fn run(options: &PageOptions) -> Result<(), Failure> {
     let viewer = options
         .page_viewer
         .as_deref()
-        .map(EmbeddedViewer::in_package);
-    let viewer = viewer
+        .map(EmbeddedViewer::in_package)
         .transpose()?
         .map(|viewer| (viewer, options.run.as_path()));
     let frames = rayon::scope(|_| write(&mut run, &out, viewer.as_ref()))?;
@@ -160,19 +159,19 @@ fn write(
 
 /// The results of the run if the file has them, else what the file says about itself.
 fn found(run: &Run, frames: usize) -> String {
-    let report = run.report.as_deref();
-    let report = report.and_then(|text| serde_json::from_str::<Value>(text).ok());
+    let text = run.report.as_deref();
+    let report = text.and_then(|text| serde_json::from_str::<Value>(text).ok());
     if let Some(report) = report {
         return results(&reproducible(report), run.scenario.as_ref());
     }
     let [first, last] = run.times.unwrap_or_default();
-    let rows = [
+    let facts = [
         ("frames", frames.to_string()),
         ("first frame [s]", format!("{first:.3}")),
         ("last frame [s]", format!("{last:.3}")),
         ("densities", DENSITIES.to_owned()),
     ];
-    let rows = rows.map(|(name, value)| (name.to_owned(), value));
+    let rows = facts.map(|(name, value)| (name.to_owned(), value));
     let table = section("Trajectories", &pairs(&rows).html());
     format!("<section class=\"results\">\n{table}</section>\n")
 }

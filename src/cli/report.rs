@@ -116,8 +116,8 @@ fn of_results(
         outputs.reads("the study's", path);
     }
     outputs.check()?;
-    let folder = options.results.clone();
-    let folder = folder.unwrap_or_else(|| PathBuf::from(&study.name));
+    let given = options.results.clone();
+    let folder = given.unwrap_or_else(|| PathBuf::from(&study.name));
     let store = Store::at(&folder);
     if !store.is_begun() {
         return Err(Failure::Input(format!(

@@ -56,8 +56,8 @@ fn files(scenario: &Scenario, typed: &Typed) -> Vec<InputFile> {
         Source::File(path) => Some(("scenario", path.clone())),
         Source::BuiltIn(_) => None,
     };
-    let plan = typed.scene.geometry.iter();
-    let plan = plan.map(|path| ("--geometry", path.clone()));
+    let geometry = typed.scene.geometry.iter();
+    let plan = geometry.map(|path| ("--geometry", path.clone()));
     let all = own.into_iter().chain(scenario.files.iter().cloned());
     all.chain(plan)
         .map(|(what, path)| InputFile {
@@ -112,8 +112,8 @@ pub fn complete(scenario: &mut Scenario) -> Result<(), Failure> {
         ),
     ];
     for (name, _) in wanted.into_iter().filter(|(_, is_wanted)| *is_wanted) {
-        let keys = serde_json::from_value(json!({ name: {} }));
-        let keys = keys.map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+        let parsed = serde_json::from_value(json!({ name: {} }));
+        let keys = parsed.map_err(|error| Failure::Input(format!("{name}: {error}")))?;
         scenario.measurements.push(keys);
     }
     Ok(())
@@ -123,9 +123,9 @@ pub fn complete(scenario: &mut Scenario) -> Result<(), Failure> {
 pub fn words(run: &str, scene: &SceneOptions, until: Option<f64>) -> Vec<String> {
     let seed = scene.changes.seed.map(|seed| seed.to_string());
     let until = until.map(|until| until.to_string());
-    let geometry = scene.geometry.as_ref();
-    let geometry = geometry.map(|path| path.display().to_string());
-    let given = [
+    let path = scene.geometry.as_ref();
+    let geometry = path.map(|path| path.display().to_string());
+    let options = [
         ("--profile", scene.profile.clone()),
         ("--seed", seed),
         ("--preset", scene.preset.clone()),
@@ -133,7 +133,7 @@ pub fn words(run: &str, scene: &SceneOptions, until: Option<f64>) -> Vec<String>
         ("--geometry", geometry),
         ("--until", until),
     ];
-    let given = given
+    let given = options
         .into_iter()
         .filter_map(|(name, value)| Some((name, value?)));
     let set = scene

@@ -142,13 +142,13 @@ fn judge(asked: &Asked, options: &SuiteOptions) -> Result<(), Failure> {
         return Err(Failure::Input(reason));
     }
     // The scenes are not in the current folder.
-    let data = options.data.as_deref();
-    let data = data.map(|folder| match fs::canonicalize(folder) {
+    let folder = options.data.as_deref();
+    let resolved = folder.map(|folder| match fs::canonicalize(folder) {
         Ok(path) if path.is_dir() => Ok(path),
         Ok(_) => Err(unusable(folder, "it is not a folder")),
         Err(error) => Err(unusable(folder, error)),
     });
-    let data = data.transpose()?;
+    let data = resolved.transpose()?;
     options.cases.apply(&[&suite.name])?;
     let planned = suite.planned(&Chosen {
         cases,
@@ -169,8 +169,7 @@ fn judge(asked: &Asked, options: &SuiteOptions) -> Result<(), Failure> {
     if let Some(file) = status
         && let Some(status) = Status::updated(&file, &report)
     {
-        let written = write_whole(&file, |whole| whole.write_all(status.as_bytes()));
-        written.map_err(|error| {
+        write_whole(&file, |whole| whole.write_all(status.as_bytes())).map_err(|error| {
             Failure::Output(format!("cannot write {}: {error}", file.display()))
         })?;
     }
@@ -219,8 +218,8 @@ fn status(asked: &Asked, options: &SuiteOptions) -> Result<Option<PathBuf>, Fail
 /// The folder for the results, after a check that they can be written and replace no input.
 fn opened(planned: &Planned, asked: &Asked, options: &SuiteOptions) -> Result<Store, Failure> {
     let own = asked.file.map(|file| ("the suite", file));
-    let inputs = planned.study.inputs();
-    let inputs = inputs.into_iter().map(|path| ("the suite's", path));
+    let files = planned.study.inputs();
+    let inputs = files.into_iter().map(|path| ("the suite's", path));
     let mut outputs = options.cases.outputs(own.into_iter().chain(inputs));
     for picture in planned.pictures() {
         outputs.writes("--out", &options.cases.out.join(picture), Manner::Beside);

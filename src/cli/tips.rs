@@ -51,7 +51,7 @@ pub fn added(mut error: clap::Error, command: &Command, typed: &[OsString]) -> c
         Some(ContextValue::String(text)) => text.clone(),
         _ => String::new(),
     };
-    let tips = match error.kind() {
+    let words = match error.kind() {
         ErrorKind::InvalidSubcommand => {
             let tip = of_command(&text(ContextKind::InvalidSubcommand));
             tip.into_iter().collect()
@@ -63,8 +63,7 @@ pub fn added(mut error: clap::Error, command: &Command, typed: &[OsString]) -> c
         }
         _ => return error,
     };
-    let tips = tips.iter().map(|tip| printable(tip).into());
-    let mut tips: Vec<StyledStr> = tips.collect();
+    let mut tips: Vec<StyledStr> = words.iter().map(|tip| printable(tip).into()).collect();
     if let Some(ContextValue::StyledStrs(own)) = error.remove(ContextKind::Suggested) {
         // Nothing here has a name that begins with dashes.
         let is_useful =
@@ -96,9 +95,9 @@ fn of_argument(given: &str, program: &Command, used: Option<&Command>) -> Vec<St
         return vec![format!("--out {given}")];
     }
     let is_here = |option: &str| used.is_some_and(|used| has(used, option));
-    let mut known = OPTIONS.iter();
-    let known = known.find(|(word, option, _)| *word == given && is_here(option));
-    let known = known.map(|(.., here)| (*here).to_owned());
+    let mut options = OPTIONS.iter();
+    let found = options.find(|(word, option, _)| *word == given && is_here(option));
+    let known = found.map(|(.., here)| (*here).to_owned());
     known.into_iter().chain(owners(given, program)).collect()
 }
 
@@ -115,9 +114,8 @@ fn has(command: &Command, option: &str) -> bool {
 /// What says which commands have an option. The commands of built-in scenarios have those of `run`.
 fn owners(option: &str, program: &Command) -> Option<String> {
     let shown = program.get_subcommands().filter(|one| !one.is_hide_set());
-    let owners = shown.filter(|one| has(one, option));
-    let names = owners.map(Command::get_name);
-    let names: Vec<&str> = names
+    let commands = shown.filter(|one| has(one, option)).map(Command::get_name);
+    let names: Vec<&str> = commands
         .filter(|name| Source::shipped(name).is_none())
         .collect();
     let named = match names.as_slice() {

@@ -131,8 +131,8 @@ impl UpdateOptions {
         if tables.iter().any(has_place) {
             return Ok(());
         }
-        let lines = tables.iter();
-        let lines = lines.map(|table| format!("<!-- {table} --> and <!-- /{table} --> after it"));
+        let names = tables.iter();
+        let lines = names.map(|table| format!("<!-- {table} --> and <!-- /{table} --> after it"));
         Err(Failure::Input(format!(
             "--update {}: no place for a table; add the lines {}",
             file.display(),

@@ -95,8 +95,8 @@ pub fn every_frames(text: &str) -> Result<u64, &'static str> {
 }
 
 fn four(text: &str) -> Option<[f64; 4]> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
-    let numbers: [f64; 4] = numbers.ok()?.try_into().ok()?;
+    let parsed: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    let numbers: [f64; 4] = parsed.ok()?.try_into().ok()?;
     numbers.iter().all(|n| n.is_finite()).then_some(numbers)
 }
 
@@ -259,8 +259,8 @@ pub fn dpi(text: &str) -> Result<f64, &'static str> {
 
 /// Two numbers, the first less than the second.
 pub fn range(text: &str) -> Result<[f64; 2], &'static str> {
-    let ends = text.split_once(',');
-    let ends = ends.map(|(low, high)| [low, high].map(|end| end.trim().parse::<f64>()));
+    let parts = text.split_once(',');
+    let ends = parts.map(|(low, high)| [low, high].map(|end| end.trim().parse::<f64>()));
     match ends {
         Some([Ok(low), Ok(high)]) if low < high && low.is_finite() && high.is_finite() => {
             Ok([low, high])
@@ -274,7 +274,7 @@ pub const MAN: &str = "man";
 
 /// What `sandbox generate` makes: scripts for shells, and the man page.
 pub fn generated() -> Vec<PossibleValue> {
-    let shells = Shell::value_variants().iter();
-    let shells = shells.filter_map(ValueEnum::to_possible_value);
+    let all = Shell::value_variants().iter();
+    let shells = all.filter_map(ValueEnum::to_possible_value);
     shells.chain([PossibleValue::new(MAN)]).collect()
 }

@@ -15,8 +15,8 @@ use scenario::quote::printable;
 
 /// A progress bar on stderr, shown only if stderr is a terminal, until it is dropped.
 pub fn bar(length: u64, template: &str) -> ProgressBar {
-    let style = ProgressStyle::with_template(template);
-    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+    let parsed = ProgressStyle::with_template(template);
+    let style = parsed.unwrap_or_else(|_| ProgressStyle::default_bar());
     let bar = ProgressBar::new(length).with_style(style);
     bar.with_finish(ProgressFinish::AndClear)
 }

@@ -329,8 +329,8 @@ pub fn try_folder(folder: &Path) -> io::Result<()> {
 /// A temporary file with a unique name, which ends in `suffix`, and the default permissions. Errors do not contain its
 /// name.
 fn temporary_in(folder: &Path, suffix: &str) -> io::Result<NamedTempFile> {
-    let mut new = File::options();
-    let new = new.read(true).write(true).create_new(true);
+    let mut options = File::options();
+    let new = options.read(true).write(true).create_new(true);
     let mut name = tempfile::Builder::new();
     name.suffix(suffix).make_in(folder, |path| new.open(path))
 }

@@ -254,8 +254,8 @@ impl Line {
     pub fn of_halves(points: &[(f64, f64)]) -> Option<Self> {
         let far = points.len().div_ceil(2);
         let pairs = points.iter().zip(points.get(far..)?);
-        let slopes = pairs.filter(|(a, b)| a.0 < b.0);
-        let slopes: Vec<f64> = slopes.map(|(a, b)| (b.1 - a.1) / (b.0 - a.0)).collect();
+        let ordered = pairs.filter(|(a, b)| a.0 < b.0);
+        let slopes: Vec<f64> = ordered.map(|(a, b)| (b.1 - a.1) / (b.0 - a.0)).collect();
         if slopes.is_empty() {
             return None;
         }
@@ -311,11 +311,11 @@ pub fn jackknife<P: Copy>(points: &[P], value: impl Fn(&[P]) -> Option<f64>) -> 
     const BLOCKS: usize = 6;
     let all = value(points)?;
     let blocks = BLOCKS.min(points.len());
-    let without = (0..blocks).map(|block| {
+    let leaving_out = (0..blocks).map(|block| {
         let [first, last] = [block, block + 1].map(|block| block * points.len() / blocks);
         value(&[&points[..first], &points[last..]].concat())
     });
-    let without = without.collect::<Option<Vec<f64>>>()?;
+    let without = leaving_out.collect::<Option<Vec<f64>>>()?;
     let count = blocks as f64;
     let error = MeanStd::of(&without).map_or(0.0, |of| (of.squares * (count - 1.0) / count).sqrt());
     Some(Estimate { value: all, error })

@@ -127,13 +127,13 @@ impl ColorMap {
     /// The nearest of every `each`-th color.
     fn nearest(&self, value: f32, each: usize) -> Rgb {
         let [first, last] = self.range;
-        let part = (value - first) / (last - first);
+        let at = (value - first) / (last - first);
         let part = match self.bands {
             Some(bands) => {
-                let band = (part * bands as f32).floor().clamp(0.0, bands as f32 - 1.0);
+                let band = (at * bands as f32).floor().clamp(0.0, bands as f32 - 1.0);
                 (band + 0.5) / bands as f32
             }
-            None => part,
+            None => at,
         };
         // `as` saturates and maps NaN to the first color.
         let last = (STEPS - 1) / each;

@@ -65,8 +65,8 @@ impl Events {
             .seen
             .replace([events.len(), arrivals.len()])
             .unwrap_or_default();
-        let new = events[known..].iter();
-        let new = new.filter(|event| !is_first || event.frame == clock.frame());
+        let unseen = events[known..].iter();
+        let new = unseen.filter(|event| !is_first || event.frame == clock.frame());
         let line = |event: &Event| {
             let (text, level) = in_words(event);
             Line {

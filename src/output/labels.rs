@@ -133,9 +133,9 @@ impl Labels {
     pub fn among_areas(mut self, scene: &Scene) -> Self {
         let places = scene.journeys.places.iter();
         let is_area = |place: &&Place| matches!(place.kind, Kind::Waiting(_) | Kind::Disk { .. });
-        let rings = places.filter(is_area).map(scenery::lines);
+        let areas = places.filter(is_area).map(scenery::lines);
         let zones = scene.journeys.zones.iter();
-        let rings = rings.chain(zones.map(|zone| zone.area.points().to_vec()));
+        let rings = areas.chain(zones.map(|zone| zone.area.points().to_vec()));
         self.areas = rings.filter_map(bounds).collect();
         self
     }
@@ -153,14 +153,14 @@ impl Labels {
         let text = brief(text);
         let width = (self.screen.width)(&text);
         let is_one_of_many = count > FEW;
-        let rings = if is_one_of_many { NEAR } else { FARTHEST };
-        let rings = (0..rings).map(|ring| GAP + f64::from(ring) * self.screen.height);
-        let candidates = rings.flat_map(|distance| {
-            let outward = spots.iter();
-            let outward = outward.filter(move |(_, side)| *side != [0, 0] || distance == GAP);
+        let count = if is_one_of_many { NEAR } else { FARTHEST };
+        let rings = (0..count).map(|ring| GAP + f64::from(ring) * self.screen.height);
+        let spread = rings.flat_map(|distance| {
+            let all = spots.iter();
+            let outward = all.filter(move |(_, side)| *side != [0, 0] || distance == GAP);
             outward.map(move |&spot| (spot, distance))
         });
-        let candidates = candidates.map(|(spot, distance)| self.candidate(width, spot, distance));
+        let candidates = spread.map(|(spot, distance)| self.candidate(width, spot, distance));
         let free: Vec<Candidate> = candidates.filter(|one| self.is_free(one)).collect();
         let (own, others) = self.areas_of(spots);
         let reach = self.screen.meters(BESIDE);

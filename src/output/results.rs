@@ -61,8 +61,8 @@ pub fn results(report: &Value, scenario: Option<&Scenario>) -> String {
         "Version and digests",
         &pairs(&digests.collect::<Vec<_>>()).html(),
     );
-    let settings = facts(&of("settings")).into_iter();
-    let settings: Vec<_> = settings
+    let listed = facts(&of("settings")).into_iter();
+    let settings: Vec<_> = listed
         .map(|(key, value)| (key, cut(tidy(&value))))
         .collect();
     html += &format!(
@@ -127,11 +127,11 @@ fn cut(text: String) -> String {
 /// Measurements, with units and meanings if the scenario is known.
 fn measurements(report: &Value, scenario: Option<&Scenario>) -> Table {
     let measured = scenario.map(|scenario| scenario.measurements.iter());
-    let known = measured.into_iter().flatten();
-    let known = known.flat_map(|one| one.quantities());
-    let known: BTreeMap<String, Quantity> = known.map(|one| (one.name.clone(), one)).collect();
-    let rows = report["metrics"].as_object();
-    let rows: Vec<(&String, &Value)> = rows.into_iter().flatten().collect();
+    let all = measured.into_iter().flatten();
+    let quantities = all.flat_map(|one| one.quantities());
+    let known: BTreeMap<String, Quantity> = quantities.map(|one| (one.name.clone(), one)).collect();
+    let metrics = report["metrics"].as_object();
+    let rows: Vec<(&String, &Value)> = metrics.into_iter().flatten().collect();
     let of = |name: &String| known.get(name);
     Table::of(&rows)
         .column("measurement", |(name, _)| name.as_str())

@@ -67,13 +67,10 @@ pub fn lines(place: &Place) -> Vec<Vector> {
         Kind::Exit(exit) => exit.line.to_vec(),
         Kind::Line(line) => line.to_vec(),
         Kind::Door(door) => door.line.to_vec(),
-        Kind::Disk { at, within } => {
-            let turns =
-                (0..=CIRCLE).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(CIRCLE));
-            turns
-                .map(|turn| at + Vector::new(turn.cos(), turn.sin()) * *within)
-                .collect()
-        }
+        Kind::Disk { at, within } => (0..=CIRCLE)
+            .map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(CIRCLE))
+            .map(|turn| at + Vector::new(turn.cos(), turn.sin()) * *within)
+            .collect(),
         Kind::Waiting(waiting) => closed(waiting.area.points()),
         Kind::Queue(queue) => queue.path.clone(),
     }
@@ -127,11 +124,10 @@ fn plain(text: &str) -> String {
 /// The names of places, zones, entrances and sources, with and without their kinds, as names are compared.
 fn names(scene: &Scene) -> BTreeSet<String> {
     let journeys = &scene.journeys;
-    let places = journeys.places.iter();
-    let places = places.map(|place| (place.kind.name(), &place.name));
+    let all = journeys.places.iter();
+    let places = all.map(|place| (place.kind.name(), &place.name));
     let zones = journeys.zones.iter().map(|one| ("zone", &one.name));
-    let entrances = scene.entrances.iter();
-    let entrances = entrances.map(|one| ("entrance", &one.name));
+    let entrances = scene.entrances.iter().map(|one| ("entrance", &one.name));
     let sources = scene.sources.iter().map(|one| ("source", &one.name));
     let all = places.chain(zones).chain(entrances).chain(sources);
     all.flat_map(|(kind, name)| [plain(name), plain(&named(kind, name))])
@@ -199,8 +195,7 @@ pub fn hatching(ring: &Ring, apart: f64) -> Vec<[Vector; 2]> {
     let mut at = (low.x / apart).ceil() * apart;
     while at < high.x {
         let ends = corners.iter().cycle().skip(1);
-        let edges = corners.iter().zip(ends);
-        let crossing = edges.filter_map(|(a, b)| {
+        let crossing = corners.iter().zip(ends).filter_map(|(a, b)| {
             let [from, to] = [a, b].map(|p| p.dot(&across) - at);
             let crosses = (from > 0.0) != (to > 0.0);
             crosses.then(|| (a + (b - a) * (from / (from - to))).dot(&along))
@@ -227,9 +222,9 @@ pub fn is_closed(simulation: &Simulation, k: usize) -> bool {
 /// The distinct goals of agents and sources without journeys, each with its groups. A source with a goal per agent
 /// contributes the goals of its first entry.
 pub fn goals(scene: &Scene, agents: &Agents) -> Vec<GoalOf> {
-    let own = agents.goal.iter().zip(&agents.group);
-    let own = own.map(|(&goal, &group)| (goal, group));
-    let entering = scene.sources.iter().flat_map(|source| {
+    let goals = agents.goal.iter().zip(&agents.group);
+    let own = goals.map(|(&goal, &group)| (goal, group));
+    let by_sources = scene.sources.iter().flat_map(|source| {
         let goals: Vec<Vector> = match source.goal {
             Goal::Point(goal) => vec![goal],
             Goal::Offset(offset) => {
@@ -239,11 +234,11 @@ pub fn goals(scene: &Scene, agents: &Agents) -> Vec<GoalOf> {
         };
         goals.into_iter().map(|goal| (goal, source.group))
     });
-    let through = scene.entrances.iter();
-    let through = through.map(|entrance| (entrance.goal, entrance.group));
-    let late = scene.latecomers.iter();
-    let late = late.map(|late| (late.agent.goal, late.agent.group));
-    let entering = entering.chain(through).chain(late);
+    let doors = scene.entrances.iter();
+    let through = doors.map(|entrance| (entrance.goal, entrance.group));
+    let arrivals = scene.latecomers.iter();
+    let late = arrivals.map(|late| (late.agent.goal, late.agent.group));
+    let entering = by_sources.chain(through).chain(late);
     let millimeters = |x: f64| (x * 1000.0).round() as i64;
     let mut different = BTreeMap::new();
     for (goal, group) in own.chain(entering) {

@@ -74,7 +74,7 @@ pub fn counts(simulation: &Simulation) -> Vec<f64> {
 
 /// The names of the entrances, and of the group of latecomers, where agents may wait for room.
 pub fn waiting(scene: &Scene) -> impl Iterator<Item = String> {
-    let names = scene.entrances.iter().map(|one| one.name.as_str());
-    let names = names.chain(scene.latecomers_name());
+    let doors = scene.entrances.iter().map(|one| one.name.as_str());
+    let names = doors.chain(scene.latecomers_name());
     names.map(|name| format!("waiting at {name}"))
 }

@@ -203,17 +203,17 @@ fn expected_secs(scenario: &Scenario) -> f64 {
     const SECONDS: [f64; 3] = [0.8e-6, 3.5e-6, 8e-6];
     let scene = &scenario.scene;
     let frames = scenario.duration_secs / scene.clock.time_step();
-    let entering = scene.sources.iter().map(|source| {
+    let by_sources = scene.sources.iter().map(|source| {
         let times = (scenario.duration_secs - source.start).max(0.0) / source.every;
         source.grid.len() as f64
             * source
                 .times
                 .map_or(times, |most| times.min(f64::from(most)))
     });
-    let through = scene.entrances.iter();
-    let through = through.map(|entrance| entrance.arrivals.about(scenario.duration_secs));
+    let doors = scene.entrances.iter();
+    let through = doors.map(|entrance| entrance.arrivals.about(scenario.duration_secs));
     let late = scene.latecomers.len() as f64;
-    let entering = entering.chain(through).chain([late]);
+    let entering = by_sources.chain(through).chain([late]);
     // Agents that enter during the run are present for half of it on average.
     let agents = scene.agents.len() as f64 + 0.5 * entering.sum::<f64>();
     let needs = scene.needs();

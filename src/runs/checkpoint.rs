@@ -153,8 +153,8 @@ impl Checkpoint {
     pub fn read(path: &Path) -> Result<Self, CheckpointError> {
         let unreadable = |error: io::Error| unreadable(path, format!("cannot be read: {error}"));
         let mut file = File::open(path).map_err(unreadable)?;
-        let start = Read::by_ref(&mut file).take(MAGIC.len() as u64);
-        let start = input::rest(start, LONGEST).map_err(unreadable)?;
+        let limited = Read::by_ref(&mut file).take(MAGIC.len() as u64);
+        let start = input::rest(limited, LONGEST).map_err(unreadable)?;
         if start != MAGIC {
             return Self::parse(&start, path); // without reading the rest, which may be long
         }
@@ -170,8 +170,8 @@ impl Checkpoint {
     pub fn parse(bytes: &[u8], path: &Path) -> Result<Self, CheckpointError> {
         let refused = |reason: &str| unreadable(path, reason.to_owned());
         let cut_short = || refused("is damaged: cut short");
-        let rest = bytes.strip_prefix(MAGIC);
-        let rest = rest.ok_or_else(|| refused("is not a checkpoint"))?;
+        let stripped = bytes.strip_prefix(MAGIC);
+        let rest = stripped.ok_or_else(|| refused("is not a checkpoint"))?;
         let (version, rest) = rest.split_first_chunk().ok_or_else(cut_short)?;
         let version = u32::from_le_bytes(*version);
         if version != VERSION {

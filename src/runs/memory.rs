@@ -30,8 +30,8 @@ impl Memory {
     pub fn lend(&self, bytes: u64) -> Lent<'_> {
         let limit = self.limit.unwrap_or(u64::MAX);
         let full = |lent: &mut u64| *lent > 0 && lent.saturating_add(bytes) > limit;
-        let lent = self.lent.lock().unwrap_or_else(PoisonError::into_inner);
-        let waited = self.returned.wait_while(lent, full);
+        let now = self.lent.lock().unwrap_or_else(PoisonError::into_inner);
+        let waited = self.returned.wait_while(now, full);
         let mut lent = waited.unwrap_or_else(PoisonError::into_inner);
         let bytes = bytes.min(u64::MAX - *lent);
         *lent += bytes;

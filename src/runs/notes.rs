@@ -17,8 +17,8 @@ use scenario::{automatic_step, doubtful_radius, tidy};
 pub fn of(run: &Run) -> Vec<String> {
     let queues = run.metrics.longest_queues(&run.simulation);
     let packed = queues.iter().filter_map(LongestQueue::packed);
-    let all = moved(run).into_iter().chain(waited(run));
-    let all = all
+    let first = moved(run).into_iter().chain(waited(run));
+    let all = first
         .chain(packed)
         .chain(idle_pushes(run))
         .chain(early(run))
@@ -61,8 +61,8 @@ fn moved(run: &Run) -> Vec<String> {
 /// Notes on agents that waited for room to enter, and on queues that were longer than their line.
 fn waited(run: &Run) -> Vec<String> {
     let simulation = &run.simulation;
-    let backlogs = simulation.backlogs().filter(|one| one.largest > 0);
-    let backlogs = backlogs.map(|backlog| {
+    let with_waits = simulation.backlogs().filter(|one| one.largest > 0);
+    let backlogs = with_waits.map(|backlog| {
         let time = simulation.frame().clock.time_at(backlog.largest_frame);
         let rest = match backlog.waiting {
             0 => String::new(),
@@ -74,8 +74,8 @@ fn waited(run: &Run) -> Vec<String> {
             shown(backlog.name)
         )
     });
-    let places = simulation.scene().journeys.places.iter();
-    let places = places.zip(&simulation.progress().places);
+    let all = simulation.scene().journeys.places.iter();
+    let places = all.zip(&simulation.progress().places);
     let queues = places.filter_map(|(place, state)| {
         let Kind::Queue(queue) = &place.kind else {
             return None;
@@ -147,8 +147,7 @@ fn early(run: &Run) -> Option<String> {
     let opens = journeys
         .changes
         .iter()
-        .find(|change| change.at > now && change.kind != ChangeKind::Close);
-    let opens = opens
+        .find(|change| change.at > now && change.kind != ChangeKind::Close)
         .filter(|_| simulation.frame().agents.count_present() > 0)
         .map(|change| {
             let name = shown(&journeys.places[usize::from(change.place)].name);
@@ -178,7 +177,7 @@ pub fn of_step(scene: &Scene) -> Option<String> {
         return None;
     }
     let automatic = automatic_step(scene).filter(|&step| step >= SHORTEST_TIME_STEP);
-    let advice = match automatic {
+    let by_step = match automatic {
         Some(automatic) => format!("--time-step auto uses {}", three_digits(automatic)),
         None => {
             "no allowed step is short enough: lower the stiffness or raise the masses".to_owned()
@@ -189,7 +188,7 @@ pub fn of_step(scene: &Scene) -> Option<String> {
             "such agents, with a radius of {} m, are lighter than people: check `radius`",
             three_digits(radius)
         ),
-        None => advice,
+        None => by_step,
     };
     Some(tidy(&format!(
         "time_step_secs {step} is {} times {}, the largest step at which a crowd comes to rest; {advice}",

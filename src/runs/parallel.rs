@@ -15,8 +15,8 @@ pub fn side_by_side<E: From<StoreError> + Send>(
 ) -> Result<(), E> {
     let next = AtomicUsize::new(0);
     let work = || {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-        let pool = pool.map_err(|error| StoreError::Threads(error.to_string()))?;
+        let built = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let pool = built.map_err(|error| StoreError::Threads(error.to_string()))?;
         loop {
             let k = next.fetch_add(1, Ordering::Relaxed);
             if k >= count {

@@ -127,8 +127,8 @@ impl Store {
     /// All results of this type, in the order of their identities; those of other types and damaged files are left out.
     pub fn all<T: DeserializeOwned>(&self) -> Vec<T> {
         let entries = fs::read_dir(self.cases()).into_iter().flatten().flatten();
-        let files = entries.map(|entry| entry.path());
-        let mut files: Vec<PathBuf> = files
+        let paths = entries.map(|entry| entry.path());
+        let mut files: Vec<PathBuf> = paths
             .filter(|path| has_extension(path, &[FINISHED]))
             .collect();
         files.sort();

@@ -46,8 +46,8 @@ pub fn draw(options: &DrawOptions, out: &Path, mut outputs: Outputs) -> Result<(
     let print = print(options, false);
     egress.sheet(&title).save_as(out, &print)?;
     let file = out.display().to_string();
-    let exits = egress.exits.iter();
-    let exits = exits.map(|(name, times)| json!({"exit": name, "secs": times}));
+    let times_by_exit = egress.exits.iter();
+    let exits = times_by_exit.map(|(name, times)| json!({"exit": name, "secs": times}));
     tell(
         options.scene.program.json,
         || json!({"file": file, "entered": egress.entered, "exits": exits.collect::<Vec<_>>()}),

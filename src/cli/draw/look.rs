@@ -140,9 +140,9 @@ fn people(run: &Run, site: &Site) -> Vec<Person> {
 
 fn values(run: &Run, name: &str) -> Result<Vec<f64>, Failure> {
     run.frames.column(name)?.ok_or_else(|| {
-        let known = run.frames.columns();
-        let near = suggestion(name, known.iter().map(String::as_str));
-        let known: Vec<String> = known
+        let columns = run.frames.columns();
+        let near = suggestion(name, columns.iter().map(String::as_str));
+        let known: Vec<String> = columns
             .iter()
             .map(|name| format!("`{}`", shown(name)))
             .collect();
@@ -168,8 +168,8 @@ fn bar(run: &Run, name: &str, range: Option<[f64; 2]>) -> Result<ColorBar, Failu
         "speed" => ColorMap::inferno(ends),
         _ => ColorMap::viridis(ends),
     };
-    let unit = UNITS.iter().find(|(own, _)| *own == name);
-    let unit = unit.map_or(String::new(), |(_, unit)| format!(" [{unit}]"));
+    let known = UNITS.iter().find(|(own, _)| *own == name);
+    let unit = known.map_or(String::new(), |(_, unit)| format!(" [{unit}]"));
     Ok(ColorBar {
         label: format!("{}{unit}", name.replace('_', " ")),
         map,

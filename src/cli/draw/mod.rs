@@ -236,9 +236,9 @@ fn simulate(
     }
     let until = times.at(times.count - 1);
     let scenario = moment::scenario(&options.run, (&options.scene, until), 0, outputs)?;
-    let paths = options.paths.iter();
-    let paths = paths.map(|text| paths::paths(text, &scenario));
-    let paths = paths.collect::<Result<Vec<_>, _>>()?;
+    let typed = options.paths.iter();
+    let parsed = typed.map(|text| paths::paths(text, &scenario));
+    let paths = parsed.collect::<Result<Vec<_>, _>>()?;
     let option = match times.is_animation {
         true => format!("--to {}", options.to.unwrap_or(until)),
         false => format!("--at {}", options.at),
@@ -293,12 +293,12 @@ fn color(options: &DrawOptions, has_colors: bool) -> &str {
 }
 
 fn print(options: &DrawOptions, is_animation: bool) -> Print {
-    let dpi = if is_animation {
+    let by_default = if is_animation {
         ANIMATION_DPI
     } else {
         PAPER_DPI
     };
-    let dpi = options.dpi.unwrap_or(dpi);
+    let dpi = options.dpi.unwrap_or(by_default);
     let paper = options.paper.map(Print::paper);
     let width = options.width.map(|width| width.points(dpi));
     Print {

@@ -48,8 +48,9 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
         // No agent goes there, so the scene has no path map to it.
         false => {
             let goals: Vec<_> = place.map(|k| places[k].goals.clone()).into_iter().collect();
-            let extra = Ways::new(ways.floor.clone(), &goals, point.into_iter().collect());
-            let extra = extra.map_err(|error| refused(format!("{error}; give a point that is")))?;
+            let planned = Ways::new(ways.floor.clone(), &goals, point.into_iter().collect());
+            let extra =
+                planned.map_err(|error| refused(format!("{error}; give a point that is")))?;
             let to = place.map_or(to, |_| Destination::Place(0));
             (Arc::new(extra), to)
         }
@@ -77,8 +78,8 @@ fn unknown(text: &str, scenario: &Scenario) -> String {
         places.map(|place| place.name.as_str())
     };
     let near = suggestion(text, names());
-    let known: Vec<String> = names().map(|name| format!("`{}`", shown(name))).collect();
-    let known = match known.as_slice() {
+    let places: Vec<String> = names().map(|name| format!("`{}`", shown(name))).collect();
+    let known = match places.as_slice() {
         [] => "the scenario has no places; give a point as X,Y".to_owned(),
         known => format!("there are {}, or give a point as X,Y", known.join(", ")),
     };

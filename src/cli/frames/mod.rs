@@ -194,8 +194,8 @@ impl<F: Film> Frames for Over<F> {
     }
 
     fn column(&self, name: &str) -> Result<Option<Vec<f64>>, Failure> {
-        let own = self.film.values(self.current, name)?;
-        let own = own.filter(|values| values.len() == self.crowd.len());
+        let of_all = self.film.values(self.current, name)?;
+        let own = of_all.filter(|values| values.len() == self.crowd.len());
         Ok(own.or_else(|| match name {
             "density" => {
                 let kernel = kernel(support_radius(&self.scene));

@@ -83,8 +83,7 @@ impl Film for Recorded {
     fn crowd(&self, k: usize) -> Crowd {
         let crowd = self.crowd(k);
         let times: Vec<f64> = self.times().collect();
-        let near = [k.saturating_sub(1), (k + 1).min(times.len() - 1)];
-        let others = near.map(|k| {
+        let others = [k.saturating_sub(1), (k + 1).min(times.len() - 1)].map(|k| {
             let other = self.crowd(k);
             let places = other.ids.into_iter().zip(other.positions);
             (times[k], places.collect::<HashMap<_, _>>())
@@ -97,8 +96,8 @@ impl Film for Recorded {
             (to.0 > from.0).then(|| (to.1 - from.1) / (to.0 - from.0))
         };
         let is_known = |radius: &f64| *radius > 0.0;
-        let radii = crowd.radii.into_iter();
-        let radii = radii.map(|radius| Some(radius).filter(is_known).unwrap_or(REFERENCE_RADIUS));
+        let known = crowd.radii.into_iter();
+        let radii = known.map(|radius| Some(radius).filter(is_known).unwrap_or(REFERENCE_RADIUS));
         let radius: Vec<f64> = radii.collect();
         let mass = |radius: &f64| (radius / REFERENCE_RADIUS).powi(2);
         let velocities = crowd.ids.iter().zip(&crowd.positions).map(velocity);

@@ -69,8 +69,8 @@ impl Tracked {
 impl Film for Tracked {
     fn crowd(&self, k: usize) -> Crowd {
         let (tracks, rows) = (&self.tracks, self.tracks.rows(k));
-        let radius = self.column("radius");
-        let radius = radius.map(|column| column.values[rows.clone()].to_vec());
+        let column = self.column("radius");
+        let radius = column.map(|column| column.values[rows.clone()].to_vec());
         let mass = self.masses(k);
         // The mass is proportional to the area.
         let own = |mass: &f64| REFERENCE_RADIUS * mass.max(0.0).sqrt();
@@ -86,8 +86,8 @@ impl Film for Tracked {
     }
 
     fn names(&self) -> Vec<&str> {
-        let own = self.columns.iter().map(|column| column.name.as_str());
-        let own = own.filter(|name| *name != "mass");
+        let columns = self.columns.iter().map(|column| column.name.as_str());
+        let own = columns.filter(|name| *name != "mass");
         std::iter::once("mass").chain(own).collect()
     }
 

@@ -4,7 +4,7 @@ mod arguments;
 
 pub use arguments::MeasureOptions;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::arguments::use_threads;
 use super::documents::add_folder;
@@ -12,6 +12,7 @@ use super::failure::Failure;
 use super::inputs::{in_order, site, tracks};
 use super::terminal::talk;
 use super::watch::bar;
+use analysis::site::Site;
 use engine::boundary::WallMethod;
 use lab::measure::{
     Behind, CellLimit, Kernel, MOST_HIDDEN, Measured, MomentRecorder, Options, Report, Results,
@@ -25,16 +26,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     check_enabled()?;
     use_threads(options.program.threads)?;
     options.print.apply();
-    // By default the folder lies in the current folder, not beside the data.
-    let folder = options.out.clone().unwrap_or_else(|| {
-        let mut name = options
-            .trajectory
-            .file_stem()
-            .unwrap_or_default()
-            .to_owned();
-        name.push("-measured");
-        name.into()
-    });
+    let folder = folder(options);
     if let (Some(from), Some(until)) = (options.from, options.until) {
         in_order(("--from", from), ("--until", until))?;
     }
@@ -47,8 +39,41 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     let site = site(&options.trajectory, options.geometry.as_deref(), &tracks)?;
     let what = what(options, &tracks);
     check(&tracks, &site, &what)?;
-    let mut results = Results::create(&folder)?;
-    let mut recording = MomentRecorder::create(&folder, (&tracks, &site), &what)?;
+    let measured = recorded(&folder, (&tracks, &site), &what)?;
+    report_oddities(&measured);
+    let report = Report {
+        tracks: &tracks,
+        options: &what,
+        measured: &measured,
+    };
+    let found = report.findings(&site)?;
+    options
+        .files
+        .give(&found, options.program.json, Some(&folder))
+}
+
+/// The folder of the results. By default it lies in the current folder, not beside the data.
+fn folder(options: &MeasureOptions) -> PathBuf {
+    let by_default = || {
+        let mut name = options
+            .trajectory
+            .file_stem()
+            .unwrap_or_default()
+            .to_owned();
+        name.push("-measured");
+        name.into()
+    };
+    options.out.clone().unwrap_or_else(by_default)
+}
+
+/// Measures, and writes the rows and a recording of them to the folder meanwhile.
+fn recorded(
+    folder: &Path,
+    (tracks, site): (&Tracks, &Site),
+    what: &Options,
+) -> Result<Measured, Failure> {
+    let mut results = Results::create(folder)?;
+    let mut recording = MomentRecorder::create(folder, (tracks, site), what)?;
     if !recording.has_own_ids {
         talk("note: in the recording ids are replaced by numbers in their order, from 0");
     }
@@ -61,7 +86,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     }
     let template = "{bar:30} {pos} of {len} rows, {eta} left";
     let progress = bar(tracks.len() as u64, template);
-    let measured = measure(&tracks, &site, &what, |moments| {
+    let measured = measure(tracks, site, what, |moments| {
         let rows: usize = moments.iter().map(|moment| moment.people.len()).sum();
         progress.inc(rows as u64);
         results.add(moments)?;
@@ -71,21 +96,9 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     let measured = measured?;
     results.finish()?;
     recording.finish()?;
-    let streamed = STREAMED.join(", ");
-    talk(&format!(
-        "note: written to {}: {streamed}",
-        folder.display()
-    ));
-    report_oddities(&measured);
-    let report = Report {
-        tracks: &tracks,
-        options: &what,
-        measured: &measured,
-    };
-    let found = report.findings(&site)?;
-    options
-        .files
-        .give(&found, options.program.json, Some(&folder))
+    let (folder, streamed) = (folder.display(), STREAMED.join(", "));
+    talk(&format!("note: written to {folder}: {streamed}"));
+    Ok(measured)
 }
 
 /// Rejects results that cannot be written or would replace an input.

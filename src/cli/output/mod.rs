@@ -207,7 +207,8 @@ impl Observer<Failure> for Recording {
             let end = format!("The run ends: {}.", run.reason());
             self.recorder.note(&self.last, &end)?;
             let json = results::json(run).to_string();
-            self.recorder.results(&results::text(run, false), &json)?;
+            let text = results::document(run, false).text();
+            self.recorder.results(&text, &json)?;
         }
         Ok(())
     }
@@ -307,9 +308,9 @@ fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> Reco
 /// The name of a recording: the scenario with its profile and seed, and what differs from its file.
 fn title(scenario: &Scenario) -> String {
     let own = format!("{} {}", scenario.name, scenario.profile_name);
-    let others = scenario.changes.iter();
+    let changes = scenario.changes.iter();
     let others =
-        others.filter(|change| !change.starts_with("profile") && !change.starts_with("seed "));
+        changes.filter(|change| !change.starts_with("profile") && !change.starts_with("seed "));
     let changes: String = others.map(|change| format!(", {change}")).collect();
     format!("{own} seed {}{changes}", scenario.seed)
 }

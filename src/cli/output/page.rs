@@ -38,13 +38,13 @@ impl PageOfRun {
         run: &mut Run,
     ) -> Result<Self, Failure> {
         run.simulation.request_density_until(u64::MAX);
-        let viewer = record
+        let packaged = record
             .page_viewer
             .as_deref()
             .map(EmbeddedViewer::in_package);
-        let viewer = viewer.transpose()?;
+        let opened = packaged.transpose()?;
         let [recording, _] = kinds(record)?;
-        let viewer = viewer.zip(recording.map(Path::to_owned));
+        let viewer = opened.zip(recording.map(Path::to_owned));
         let options = PageOptions {
             has_viewer: viewer.is_some(),
             ..options(&run.scenario, &debug, record.record_from)
@@ -63,9 +63,9 @@ impl PageOfRun {
 impl Observer<Failure> for PageOfRun {
     fn observe(&mut self, run: &Run, _: f64, then: ControlFlow<End>) -> Result<(), Failure> {
         if self.due.now(&run.simulation) {
-            let events = self.events.new_lines(&run.simulation);
+            let new = self.events.new_lines(&run.simulation);
             let crowd = Crowd::of(&run.simulation);
-            let events = (self.events.evacuated, events);
+            let events = (self.events.evacuated, new);
             let moment = Moment::of(&run.simulation, &crowd, events, &self.debug);
             self.page.add(&moment)?;
         }
@@ -128,9 +128,9 @@ pub fn save_moment(
 ) -> Result<(), Failure> {
     let agents = simulation.frame().agents;
     let of = |&id: &u32| Breakdown::of(simulation, agents.index_of(id)?);
-    let numbers = ids.iter().filter_map(of);
-    let numbers = numbers.map(|agent| format!("<pre>{}</pre>\n", escape(&agent.to_string())));
-    let numbers: String = numbers.collect();
+    let agents = ids.iter().filter_map(of);
+    let elements = agents.map(|agent| format!("<pre>{}</pre>\n", escape(&agent.to_string())));
+    let numbers: String = elements.collect();
     let follows = ids.first().copied();
     let debug = DebugAgents::Ids(ids);
     let now = simulation.frame().clock.time();

@@ -67,8 +67,7 @@ impl Names {
     pub fn in_folder(&self) -> Vec<String> {
         let whole = ["json", "md"].map(|end| format!("{}.{end}", self.name));
         let tables = self.tables.iter().map(|table| format!("{table}.csv"));
-        let figures = self.figures.iter();
-        let figures = figures.flat_map(|figure| {
+        let figures = self.figures.iter().flat_map(|figure| {
             let ends = Print::of_program().extensions();
             ends.map(move |end| format!("{figure}.{end}"))
         });

@@ -56,8 +56,8 @@ impl Document {
 
 /// The blocks, with an empty line between any two of them.
 fn lines(blocks: &[Block], markup: Markup) -> String {
-    let shown = blocks.iter().filter(|block| !block.is_empty());
-    let shown: Vec<String> = shown.filter_map(|block| markup.shown(block)).collect();
+    let filled = blocks.iter().filter(|block| !block.is_empty());
+    let shown: Vec<String> = filled.filter_map(|block| markup.shown(block)).collect();
     shown.join("\n\n") + "\n"
 }
 

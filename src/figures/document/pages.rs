@@ -160,13 +160,13 @@ impl Writer {
     fn table(&mut self, table: &Table) -> Done {
         let rows = table.lines();
         let widths = widths(&rows);
-        let wrapped = rows.iter().map(|row| {
+        let by_row = rows.iter().map(|row| {
             let cells = row.iter().zip(&widths);
             cells
                 .map(|(cell, width)| Cell::new(cell, *width))
                 .collect::<Vec<_>>()
         });
-        let wrapped: Vec<Vec<Cell>> = wrapped.collect();
+        let wrapped: Vec<Vec<Cell>> = by_row.collect();
         let Some((head, rows)) = wrapped.split_first() else {
             return Ok(());
         };
@@ -217,8 +217,8 @@ impl Writer {
         let count = self.pages.count();
         for k in 0..count {
             self.pages.go_to(k);
-            let at = [LEFT, SIZE[1] - 36.0];
-            self.pages.text(PROGRAM, at, (CELL, GRAY))?;
+            let left = [LEFT, SIZE[1] - 36.0];
+            self.pages.text(PROGRAM, left, (CELL, GRAY))?;
             let number = format!("{} / {count}", k + 1);
             let at = [SIZE[0] - LEFT - text_width(&number, CELL), SIZE[1] - 36.0];
             self.pages.text(&number, at, (CELL, GRAY))?;
@@ -249,8 +249,8 @@ fn caption_height(caption: &str) -> f64 {
 }
 
 fn height(row: &[Cell]) -> f64 {
-    let most = row.iter().map(|cell| cell.lines.len()).max();
-    let most = most.unwrap_or(0).max(1);
+    let longest = row.iter().map(|cell| cell.lines.len()).max();
+    let most = longest.unwrap_or(0).max(1);
     most as f64 * CELL * LINE + ROW
 }
 

@@ -65,9 +65,9 @@ impl Animation {
         if !has_extension(path, &["mp4", "webm"]) {
             return Ok(());
         }
-        let tried = ffmpeg().arg("-version").stdin(Stdio::null()).status();
-        let tried = tried.map_err(|error| error.to_string());
-        let tried = tried.and_then(|status| match status.success() {
+        let ran = ffmpeg().arg("-version").stdin(Stdio::null()).status();
+        let outcome = ran.map_err(|error| error.to_string());
+        let tried = outcome.and_then(|status| match status.success() {
             true => Ok(()),
             false => Err(format!("`ffmpeg -version` ends with {status}")),
         });
@@ -248,19 +248,19 @@ fn changed(image: &RgbImage, before: Option<&RgbImage>, delay: u16) -> gif::Fram
     let places = (low[1]..high[1]).flat_map(|y| (low[0]..high[0]).map(move |x| (x, y)));
     let color = |(x, y)| differs(x, y).then(|| image.get_pixel(x, y).0);
     let colors: Vec<Option<Rgb>> = places.map(color).collect();
-    let palette = most_frequent(colors.iter().flatten().copied());
+    let frequent = most_frequent(colors.iter().flatten().copied());
     let mut known: HashMap<Rgb, u8> = HashMap::new();
     let mut index = |color: Rgb| {
         *known
             .entry(color)
-            .or_insert_with(|| nearest(&palette, color))
+            .or_insert_with(|| nearest(&frequent, color))
     };
     let pixels: Vec<u8> = colors
         .iter()
         .map(|color| color.map_or(COLORS as u8, &mut index))
         .collect();
     let [width, height] = [0, 1].map(|k| (high[k] - low[k]) as u16);
-    let palette = palette.concat();
+    let palette = frequent.concat();
     let clear = Some(COLORS as u8);
     let mut frame = gif::Frame::from_palette_pixels(width, height, pixels, palette, clear);
     (frame.left, frame.top) = (low[0] as u16, low[1] as u16);
@@ -272,11 +272,11 @@ fn changed(image: &RgbImage, before: Option<&RgbImage>, delay: u16) -> gif::Fram
 /// The most frequent colors, as many as a palette has, and grays for the edges of letters. Marks keep their own colors:
 /// only the many colors of smooth edges are changed.
 fn most_frequent(colors: impl Iterator<Item = Rgb>) -> Vec<Rgb> {
-    let mut counts: HashMap<Rgb, u32> = HashMap::new();
+    let mut by_color: HashMap<Rgb, u32> = HashMap::new();
     for color in colors {
-        *counts.entry(color).or_insert(0) += 1;
+        *by_color.entry(color).or_insert(0) += 1;
     }
-    let mut counts: Vec<(Rgb, u32)> = counts.into_iter().collect();
+    let mut counts: Vec<(Rgb, u32)> = by_color.into_iter().collect();
     counts.sort_by_key(|&(color, count)| (Reverse(count), color));
     let step = 255 / (GRAYS as u8 - 1);
     let grays = (0..GRAYS as u8).map(|k| [k * step; 3]);

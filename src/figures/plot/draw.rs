@@ -8,9 +8,8 @@ use super::error::Drawn;
 use super::font::{LINE, lines, width_of};
 use super::ink::{Ink, fill};
 use super::layout::{self, BAR_WIDTH, LABEL, Layout, PAD, SAMPLE, TICK, TITLE, height_of};
-use super::{
-    Axis, BLACK, Cells, ColorBar, Corner, Mark, NO_DATA, Panel, Print, Sheet, Style, marks,
-};
+use super::marks::{self, Canvas};
+use super::{Axis, BLACK, Cells, ColorBar, Corner, Mark, NO_DATA, Panel, Print, Sheet, Style};
 
 const RIM: f64 = 0.6; // width of the lines around a panel
 const LARGEST_DOT: f64 = 3.6; // radius of a dot in a legend
@@ -61,12 +60,12 @@ pub fn draw<DB: DrawingBackend>(
         page.bar(bar, (layout.bar, [BAR_WIDTH, foot - layout.bar[1]]), gaps)?;
     }
     let rows = layout.corners.iter().step_by(layout.columns);
-    let left = layout.corners.first().map_or(0.0, |corner| corner[0]);
+    let inner = layout.corners.first().map_or(0.0, |corner| corner[0]);
     let numbers = sheet
         .panels
         .iter()
         .map(|panel| layout::beside(&panel.y, height));
-    let left = left - numbers.fold(0.0, f64::max) - PAD;
+    let left = inner - numbers.fold(0.0, f64::max) - PAD;
     for (title, [_, y]) in sheet.row_titles.iter().zip(rows) {
         let title = lines(title, LABEL, height);
         page.upward(&title, [left, y + 0.5 * height])?;
@@ -96,8 +95,8 @@ impl<DB: DrawingBackend> Page<'_, DB> {
 
     /// Lines of text that run upward, the last of them left of a place.
     fn upward(&self, texts: &[String], [x, y]: [f64; 2]) -> Drawn {
-        let style = self.ink.text(LABEL, BLACK, [0, 0]);
-        let style = style.transform(FontTransform::Rotate270);
+        let upright = self.ink.text(LABEL, BLACK, [0, 0]);
+        let style = upright.transform(FontTransform::Rotate270);
         for (k, text) in texts.iter().rev().enumerate() {
             let x = x - (k as f64 + 0.5) * LABEL * LINE;
             self.root.draw_text(text, &style, self.ink.at([x, y]))?;
@@ -113,8 +112,8 @@ impl<DB: DrawingBackend> Page<'_, DB> {
 
     fn rim(&self, ([x, y], [width, height]): Rect) -> Drawn {
         let (right, foot) = (x + width, y + height);
-        let corners = [[x, foot], [right, foot], [right, y], [x, y], [x, foot]];
-        let corners = corners.map(|corner| self.ink.at(corner));
+        let places = [[x, foot], [right, foot], [right, y], [x, y], [x, foot]];
+        let corners = places.map(|corner| self.ink.at(corner));
         let line = self.ink.stroke(BLACK, RIM);
         Ok(self.root.draw(&PathElement::new(corners, line))?)
     }
@@ -133,11 +132,11 @@ impl<DB: DrawingBackend> Page<'_, DB> {
     }
 
     fn marks(&self, panel: &Panel, (corner, size): Rect) -> Drawn {
-        let area = self.root.clone();
-        let area = area.shrink(self.ink.at(corner), self.ink.at(size));
-        let mut chart = marks::chart_on(&area)?;
+        let whole = self.root.clone();
+        let area = whole.shrink(self.ink.at(corner), self.ink.at(size));
+        let mut canvas = Canvas::on(&area, panel, self.ink)?;
         let mut marks = panel.marks.iter();
-        marks.try_for_each(|mark| marks::draw(mark, panel, &mut chart, self.ink))
+        marks.try_for_each(|mark| canvas.draw(mark))
     }
 
     fn x_axis(&self, axis: &Axis, [left, y]: [f64; 2], width: f64) -> Drawn {

@@ -66,8 +66,8 @@ pub fn height_of(lines: usize, size: f64) -> f64 {
 
 /// The space that the numbers and the label of a vertical axis need; `bar`: of a color bar with them.
 pub fn beside(axis: &Axis, height: f64) -> f64 {
-    let label = lines(&axis.label, LABEL, height).len();
-    let label = height_of(label, LABEL) + if label > 0 { PAD } else { 0.0 };
+    let count = lines(&axis.label, LABEL, height).len();
+    let label = height_of(count, LABEL) + if count > 0 { PAD } else { 0.0 };
     TICK + PAD + axis.fitted(height, false).widest() + label
 }
 
@@ -179,8 +179,8 @@ impl Space {
             Some(bar) => GAP + bar_width(bar, height, gaps),
             None => 0.0,
         };
-        let rows = sheet.row_titles.iter();
-        let rows = rows.map(|title| lines(title, LABEL, height).len()).max();
+        let all = sheet.row_titles.iter();
+        let rows = all.map(|title| lines(title, LABEL, height).len()).max();
         Self {
             left: most(&|panel| beside(&panel.y, height)),
             below: most(&|panel| below(&panel.x, width)),
@@ -315,8 +315,8 @@ fn tops(
     let (mut y, mut tops) = (begin, Vec::new());
     for row in 0..=(count / columns) {
         let panels = sheet.panels.iter().skip(row * columns).take(columns);
-        let titles = panels.map(|panel| title_of(panel, sheet, print, width).len());
-        let titles = titles.max().unwrap_or(0);
+        let counts = panels.map(|panel| title_of(panel, sheet, print, width).len());
+        let titles = counts.max().unwrap_or(0);
         let is_close = sheet.shared_axes && row > 0 && titles > 0;
         y += (height_of(titles, LABEL) + 3.0).max(GAP) + if is_close { ABOVE } else { 0.0 };
         tops.push(y);

@@ -10,7 +10,7 @@ use plotters::prelude::*;
 
 use super::error::{Drawn, PlotError};
 use super::ink::{Ink, fill};
-use super::{Cells, Disc, LABEL_SIZE, Label, Mark, NO_DATA, Panel, Style};
+use super::{Cells, Disc, LABEL_SIZE, Label, Mark, NO_DATA, Panel, Point, Style};
 use crate::colors::Rgb;
 
 /// More discs or cells than this are drawn as pixels: as separate shapes, they would make an SVG too large for
@@ -31,11 +31,11 @@ type Place = (f64, f64);
 /// linear.
 type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// The chart on an area.
-pub fn chart_on<'a, DB: DrawingBackend>(
-    area: &DrawingArea<DB, Shift>,
-) -> Result<Chart<'a, DB>, PlotError> {
-    Ok(ChartBuilder::on(area).build_cartesian_2d(0.0..1.0, 0.0..1.0)?)
+/// A panel, and where its marks are drawn.
+pub struct Canvas<'a, DB: DrawingBackend> {
+    panel: &'a Panel,
+    chart: Chart<'a, DB>,
+    ink: Ink,
 }
 
 /// A dot, filled or hollow.
@@ -68,37 +68,6 @@ pub fn line<C: Clone>(
         ink.units(DASH),
         ink.stroke(style.color, style.width),
     )
-}
-
-/// Draws one mark. Pixels cover earlier marks even where they are white.
-pub fn draw<DB: DrawingBackend>(
-    mark: &Mark,
-    panel: &Panel,
-    chart: &mut Chart<DB>,
-    ink: Ink,
-) -> Drawn {
-    if shapes(mark, panel) <= MOST_SHAPES {
-        return draw_shapes(mark, panel, chart, ink);
-    }
-    let size @ (width, height) = chart.plotting_area().dim_in_pixel();
-    let mut image = RgbImage::from_pixel(width, height, image::Rgb([255; 3]));
-    let marks = match mark {
-        Mark::Group(marks) => marks,
-        mark => std::slice::from_ref(mark),
-    };
-    for mark in marks {
-        match mark {
-            Mark::Discs(discs) => color_discs(discs, panel, &mut image, ink),
-            Mark::Cells(cells) => color_cells(cells, panel, &mut image, Some(NO_DATA)),
-            Mark::Overlay(cells) => color_cells(cells, panel, &mut image, None),
-            mark => {
-                let area = BitMapBackend::with_buffer(&mut image, size).into_drawing_area();
-                draw_shapes(mark, panel, &mut chart_on(&area)?, ink)?;
-            }
-        }
-    }
-    chart.draw_series(BitMapElement::with_ref((0.0, 1.0), size, &image))?;
-    Ok(())
 }
 
 /// The number of shapes of a mark that may have many.
@@ -181,119 +150,150 @@ fn rim_color(color: Rgb) -> Rgb {
     color.map(|value| (f64::from(value) * 0.5) as u8)
 }
 
-fn draw_shapes<DB: DrawingBackend>(
-    mark: &Mark,
-    panel: &Panel,
-    chart: &mut Chart<DB>,
-    ink: Ink,
-) -> Drawn {
-    match mark {
-        Mark::Discs(discs) => {
-            let scale = panel.scale(chart.plotting_area().dim_in_pixel().0);
-            let shown = panel.shown(discs, |disc| disc.center);
-            let circle = |at: Place, radius: f64, color: Rgb| {
-                Circle::new(at, radius.round().max(1.0) as i32, fill(color))
-            };
-            for (disc, at) in shown {
-                let radius = disc.radius * scale;
-                let rim = rim(radius, ink);
-                let outer = (rim > 0.0).then(|| circle(at, radius, rim_color(disc.color)));
-                let inner = circle(at, radius - rim, disc.color);
-                chart.draw_series(outer.into_iter().chain([inner]))?;
-            }
-        }
-        Mark::Area(corners, color) => {
-            let rim = corners.iter().chain(corners.first());
-            let rim = with_crossings(rim.map(|&corner| panel.place(corner)).collect());
-            let rim: Vec<Place> = rim.into_iter().map(bounded).collect();
-            chart.draw_series([Polygon::new(rim, fill(*color))])?;
-        }
-        Mark::Line(points, style) => {
-            let path = with_crossings(points.iter().map(|&point| panel.place(point)).collect());
-            let parts = path.split(|place| !is_inside(place));
-            chart.draw_series(parts.map(|part| line(part.to_vec(), style, ink)))?;
-        }
-        Mark::Points(points, style) => {
-            let shown = panel.shown(points, |point| [point.x, point.y]);
-            let (look, ends) = (
-                ink.stroke(style.color, ERROR_BAR),
-                ink.units(1.6 * style.width),
-            );
-            let uncertain = shown.iter().filter(|(point, _)| point.error > 0.0);
-            chart.draw_series(uncertain.map(|&(point, (x, y))| {
-                let low = panel.y.place(point.y - point.error).max(0.0);
-                let high = panel.y.place(point.y + point.error).min(1.0);
-                ErrorBar::new_vertical(x, low, y, high, look, ends as u32)
-            }))?;
-            if style.broken {
-                // Error bars and lines do not show through hollow dots.
-                let white = Style::full([255; 3], 0.8 * style.width, "");
-                chart.draw_series(shown.iter().map(|&(_, at)| dot(at, &white, ink)))?;
-            }
-            chart.draw_series(shown.iter().map(|&(_, at)| dot(at, style, ink)))?;
-        }
-        Mark::Cells(cells) | Mark::Overlay(cells) => {
-            let missing = matches!(mark, Mark::Cells(_)).then_some(NO_DATA);
-            let [low, high] = cells.extent;
-            let counts = [cells.columns, cells.values.len() / cells.columns.max(1)];
-            let corner = |index: [usize; 2]| {
-                let part = |k: usize| index[k] as f64 / counts[k] as f64;
-                bounded(panel.place([0, 1].map(|k| low[k] + part(k) * (high[k] - low[k]))))
-            };
-            let values = cells.values.iter().enumerate();
-            chart.draw_series(values.filter_map(|(k, value)| {
-                let (column, row) = (k % cells.columns, k / cells.columns);
-                let corners = [corner([column, row]), corner([column + 1, row + 1])];
-                let color = cells.color(*value).or(missing)?;
-                Some(Rectangle::new(corners, fill(color)))
-            }))?;
-        }
-        Mark::Label(label) => draw_label(label, panel, chart, ink)?,
-        Mark::Group(marks) => {
-            for mark in marks {
-                draw_shapes(mark, panel, chart, ink)?;
-            }
-        }
-        Mark::Text(at, text, color) => {
-            let style = ink.text(LABEL_SIZE, *color, [0, 0]);
-            let at = bounded(panel.place(*at));
-            chart.draw_series([Text::new(text.clone(), at, style)])?;
-        }
+impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
+    /// The canvas on an area.
+    pub fn on(
+        area: &DrawingArea<DB, Shift>,
+        panel: &'a Panel,
+        ink: Ink,
+    ) -> Result<Self, PlotError> {
+        let chart = ChartBuilder::on(area).build_cartesian_2d(0.0..1.0, 0.0..1.0)?;
+        Ok(Self { panel, chart, ink })
     }
-    Ok(())
-}
 
-/// Draws the text in white around its place, then in its color.
-fn draw_label<DB: DrawingBackend>(
-    label: &Label,
-    panel: &Panel,
-    chart: &mut Chart<DB>,
-    ink: Ink,
-) -> Drawn {
-    let (x, y) = panel.place(label.at);
-    let (width, height) = chart.plotting_area().dim_in_pixel();
-    let rim = f64::from(ink.units(RIM));
-    let around = [
-        (-1.0, -1.0),
-        (1.0, -1.0),
-        (-1.0, 1.0),
-        (1.0, 1.0),
-        (0.0, 0.0),
-    ];
-    for (right, up) in around {
-        let color = if (right, up) == (0.0, 0.0) {
-            label.color
-        } else {
-            [255; 3]
+    /// Draws one mark. Pixels cover earlier marks even where they are white.
+    pub fn draw(&mut self, mark: &Mark) -> Drawn {
+        if shapes(mark, self.panel) <= MOST_SHAPES {
+            return self.shapes(mark);
+        }
+        let size @ (width, height) = self.chart.plotting_area().dim_in_pixel();
+        let mut image = RgbImage::from_pixel(width, height, image::Rgb([255; 3]));
+        let marks = match mark {
+            Mark::Group(marks) => marks,
+            mark => std::slice::from_ref(mark),
         };
-        let style = ink.text(LABEL_SIZE, color, label.side);
-        let at = (
-            x + right * rim / f64::from(width),
-            y + up * rim / f64::from(height),
-        );
-        chart.draw_series([Text::new(label.text.clone(), bounded(at), style)])?;
+        for mark in marks {
+            match mark {
+                Mark::Discs(discs) => color_discs(discs, self.panel, &mut image, self.ink),
+                Mark::Cells(cells) => color_cells(cells, self.panel, &mut image, Some(NO_DATA)),
+                Mark::Overlay(cells) => color_cells(cells, self.panel, &mut image, None),
+                mark => {
+                    let area = BitMapBackend::with_buffer(&mut image, size).into_drawing_area();
+                    Canvas::on(&area, self.panel, self.ink)?.shapes(mark)?;
+                }
+            }
+        }
+        self.chart
+            .draw_series(BitMapElement::with_ref((0.0, 1.0), size, &image))?;
+        Ok(())
     }
-    Ok(())
+
+    /// Draws one mark, shape by shape.
+    fn shapes(&mut self, mark: &Mark) -> Drawn {
+        match mark {
+            Mark::Discs(discs) => self.discs(discs)?,
+            Mark::Area(corners, color) => {
+                let closed = corners.iter().chain(corners.first());
+                let path = self.panel.path(closed);
+                let rim: Vec<Place> = path.into_iter().map(bounded).collect();
+                self.chart.draw_series([Polygon::new(rim, fill(*color))])?;
+            }
+            Mark::Line(points, style) => {
+                let path = self.panel.path(points.iter());
+                let parts = path.split(|place| !is_inside(place));
+                self.chart
+                    .draw_series(parts.map(|part| line(part.to_vec(), style, self.ink)))?;
+            }
+            Mark::Points(points, style) => self.points(points, style)?,
+            Mark::Cells(cells) => self.cells(cells, Some(NO_DATA))?,
+            Mark::Overlay(cells) => self.cells(cells, None)?,
+            Mark::Label(label) => self.label(label)?,
+            Mark::Group(marks) => {
+                for mark in marks {
+                    self.shapes(mark)?;
+                }
+            }
+            Mark::Text(at, text, color) => {
+                let style = self.ink.text(LABEL_SIZE, *color, [0, 0]);
+                let at = bounded(self.panel.place(*at));
+                self.chart
+                    .draw_series([Text::new(text.clone(), at, style)])?;
+            }
+        }
+        Ok(())
+    }
+
+    fn discs(&mut self, discs: &[Disc]) -> Drawn {
+        let (panel, ink, chart) = (self.panel, self.ink, &mut self.chart);
+        let scale = panel.scale(chart.plotting_area().dim_in_pixel().0);
+        let circle = |at: Place, radius: f64, color: Rgb| {
+            Circle::new(at, radius.round().max(1.0) as i32, fill(color))
+        };
+        for (disc, at) in panel.shown(discs, |disc| disc.center) {
+            let radius = disc.radius * scale;
+            let rim = rim(radius, ink);
+            let outer = (rim > 0.0).then(|| circle(at, radius, rim_color(disc.color)));
+            let inner = circle(at, radius - rim, disc.color);
+            chart.draw_series(outer.into_iter().chain([inner]))?;
+        }
+        Ok(())
+    }
+
+    /// Draws points with the bars of their errors.
+    fn points(&mut self, points: &[Point], style: &Style) -> Drawn {
+        let (panel, ink, chart) = (self.panel, self.ink, &mut self.chart);
+        let shown = panel.shown(points, |point| [point.x, point.y]);
+        let dots = |style: Style| shown.iter().map(move |&(_, at)| dot(at, &style, ink));
+        let look = ink.stroke(style.color, ERROR_BAR);
+        let ends = ink.units(1.6 * style.width) as u32;
+        let uncertain = shown.iter().filter(|(point, _)| point.error > 0.0);
+        chart.draw_series(uncertain.map(|&(point, (x, y))| {
+            let low = panel.y.place(point.y - point.error).max(0.0);
+            let high = panel.y.place(point.y + point.error).min(1.0);
+            ErrorBar::new_vertical(x, low, y, high, look, ends)
+        }))?;
+        if style.broken {
+            // Error bars and lines do not show through hollow dots.
+            chart.draw_series(dots(Style::full([255; 3], 0.8 * style.width, "")))?;
+        }
+        chart.draw_series(dots(style.clone()))?;
+        Ok(())
+    }
+
+    /// Draws cells; those without a value in the color `missing`, or not at all.
+    fn cells(&mut self, cells: &Cells, missing: Option<Rgb>) -> Drawn {
+        let (panel, chart) = (self.panel, &mut self.chart);
+        let [low, high] = cells.extent;
+        let counts = [cells.columns, cells.values.len() / cells.columns.max(1)];
+        let corner = |index: [usize; 2]| {
+            let part = |k: usize| index[k] as f64 / counts[k] as f64;
+            bounded(panel.place([0, 1].map(|k| low[k] + part(k) * (high[k] - low[k]))))
+        };
+        let values = cells.values.iter().enumerate();
+        chart.draw_series(values.filter_map(|(k, value)| {
+            let (column, row) = (k % cells.columns, k / cells.columns);
+            let corners = [corner([column, row]), corner([column + 1, row + 1])];
+            let color = cells.color(*value).or(missing)?;
+            Some(Rectangle::new(corners, fill(color)))
+        }))?;
+        Ok(())
+    }
+
+    /// Draws the text in white around its place, then in its color.
+    fn label(&mut self, label: &Label) -> Drawn {
+        let (panel, ink, chart) = (self.panel, self.ink, &mut self.chart);
+        let (x, y) = panel.place(label.at);
+        let (width, height) = chart.plotting_area().dim_in_pixel();
+        let rim = f64::from(ink.units(RIM));
+        let white = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|to| (to, [255; 3]));
+        for ((right, up), color) in white.into_iter().chain([((0.0, 0.0), label.color)]) {
+            let style = ink.text(LABEL_SIZE, color, label.side);
+            let [aside, above] = [right * rim / f64::from(width), up * rim / f64::from(height)];
+            let at = (x + aside, y + above);
+            chart.draw_series([Text::new(label.text.clone(), bounded(at), style)])?;
+        }
+        Ok(())
+    }
 }
 
 /// A place that does not overflow a backend's units.
@@ -336,6 +336,10 @@ impl Cells {
 impl Panel {
     fn place(&self, [x, y]: [f64; 2]) -> Place {
         (self.x.place(x), self.y.place(y))
+    }
+
+    fn path<'a>(&self, points: impl Iterator<Item = &'a [f64; 2]>) -> Vec<Place> {
+        with_crossings(points.map(|&point| self.place(point)).collect())
     }
 
     /// The items inside of the plotting area with their places.

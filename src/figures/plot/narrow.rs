@@ -52,8 +52,7 @@ impl Sheet {
                 .filter(|title| !title.is_empty());
             both.cloned().collect::<Vec<_>>().join(", ")
         };
-        let panels = self.panels.iter().enumerate();
-        let panels = panels.map(|(k, panel)| Panel {
+        let panels = self.panels.iter().enumerate().map(|(k, panel)| Panel {
             title: title(k),
             ..panel.clone()
         });

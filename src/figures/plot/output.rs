@@ -66,11 +66,11 @@ impl Sheet {
             // The encoder of images in an SVG only finds repetitions of the row above: pairs of rows halve its size.
             alike: 2,
         };
-        let mut text = String::new();
-        let backend = SVGBackend::with_string(&mut text, (width, height));
+        let mut drawn = String::new();
+        let backend = SVGBackend::with_string(&mut drawn, (width, height));
         sheet.draw(&layout, print, backend, ink)?;
         let points = size.map(|units| f64::from(units) / f64::from(SVG_SCALE));
-        let text = text
+        let text = drawn
             .replacen(
                 &format!(r#"width="{width}" height="{height}""#),
                 &format!(r#"width="{}pt" height="{}pt""#, points[0], points[1]),

@@ -127,8 +127,8 @@ impl Pdf {
         let count = self.pages.len() as i32;
         let place = |k: i32| Ref::new(FIRST_PAGE + 2 * k);
         pdf.pages(PAGES).kids((0..count).map(place)).count(count);
-        let images = (0..).zip(&self.images);
-        let images: Vec<_> = images
+        let numbered = (0..).zip(&self.images);
+        let images: Vec<_> = numbered
             .map(|(k, image)| (format!("I{k}"), Ref::new(FIRST_PAGE + 2 * count + k), image))
             .collect();
         let [width, height] = self.size.map(|length| length as f32);
@@ -337,8 +337,8 @@ impl DrawingBackend for Backend<'_> {
         let glyphs = text
             .chars()
             .map(|letter| (font::drawn(face, letter), letter));
-        let numbers = glyphs.flat_map(|(glyph, letter)| self.0.glyph(glyph, letter).to_be_bytes());
-        let numbers: Vec<u8> = numbers.collect();
+        let bytes = glyphs.flat_map(|(glyph, letter)| self.0.glyph(glyph, letter).to_be_bytes());
+        let numbers: Vec<u8> = bytes.collect();
         let transform = style.transform();
         let [right, up] = [[1.0, 0.0], [0.0, -1.0]].map(|way| font::turned(&transform, way));
         let matrix = [right[0], right[1], up[0], up[1], x, y].map(|number| number as f32);

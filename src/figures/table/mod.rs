@@ -125,14 +125,18 @@ impl Table {
         }
     }
 
-    /// As plain text in aligned columns: texts left-aligned, numbers right-aligned.
+    /// As plain text in aligned columns: texts left-aligned, numbers right-aligned. Names stand above them unless all are
+    /// empty.
     pub fn text(&self) -> String {
-        let lines = self.lines();
-        let layout = (0..self.heads.len()).map(|k| {
+        let mut lines = self.lines();
+        if self.heads.iter().all(|head| head.name.is_empty()) {
+            lines.remove(0);
+        }
+        let columns = (0..self.heads.len()).map(|k| {
             let width = lines.iter().map(|line| line[k].chars().count()).max();
             (width.unwrap_or(0), self.has_numbers(k))
         });
-        let layout: Vec<(usize, bool)> = layout.collect();
+        let layout: Vec<(usize, bool)> = columns.collect();
         let mut text = String::new();
         for line in &lines {
             let cells = line.iter().zip(&layout);
@@ -148,9 +152,9 @@ impl Table {
 
     /// As Markdown.
     pub fn markdown(&self) -> String {
-        let mut lines = self.lines();
-        lines.insert(1, vec!["---".to_owned(); self.heads.len()]);
-        let lines = lines.iter();
+        let mut rows = self.lines();
+        rows.insert(1, vec!["---".to_owned(); self.heads.len()]);
+        let lines = rows.iter();
         lines
             .map(|cells| {
                 let cells: Vec<String> =
@@ -179,8 +183,8 @@ impl Table {
             cells.collect::<Vec<_>>()
         });
         let row = |tag: &str, cells: Vec<(&str, String)>| {
-            let cells = cells.iter();
-            let cells = cells.map(|(class, cell)| format!("<{tag}{class}>{cell}</{tag}>"));
+            let classed = cells.iter();
+            let cells = classed.map(|(class, cell)| format!("<{tag}{class}>{cell}</{tag}>"));
             format!("<tr>{}</tr>\n", cells.collect::<String>())
         };
         let head = rows
@@ -199,14 +203,12 @@ impl Table {
     /// Never in practice: the rows are written to memory and have the same length.
     pub fn csv(&self) -> Result<Vec<u8>, csv::Error> {
         let heads = self.heads.iter().flat_map(|head| {
-            let suffixes = head.suffixes.as_ref().map_or(&[""][..], |both| both);
-            let suffixes = suffixes.iter();
+            let suffixes = head.suffixes.as_ref().map_or(&[""][..], |both| both).iter();
             suffixes.map(|suffix| format!("{}{suffix}", head.name))
         });
         let number = |number: &f64| number.to_string();
         let rows = self.rows.iter().map(|row| {
-            let cells = row.iter().zip(&self.heads);
-            let fields = cells.flat_map(|(cell, head)| {
+            let fields = row.iter().zip(&self.heads).flat_map(|(cell, head)| {
                 let (first, second) = match cell {
                     Cell::Text(text) => (text.clone(), None),
                     Cell::Number(value) => (number(value), None),

@@ -85,8 +85,8 @@ impl Crowd {
     /// # Errors
     /// The profile does not exist.
     pub fn scene(&self) -> Result<Scene, LabError> {
-        let blend = catalog::named(self.profile, &self.parameters);
-        let blend = blend.map_err(|error| LabError::Data(error.to_string()))?;
+        let found = catalog::named(self.profile, &self.parameters);
+        let blend = found.map_err(|error| LabError::Data(error.to_string()))?;
         let mut scene = Scene::default();
         let group = scene.add_group(Group {
             counted: false,
@@ -109,8 +109,8 @@ impl Crowd {
     fn places(&self, seed: u64) -> Vec<Vector> {
         let spacing = (2.0 / (self.density * 3.0_f64.sqrt())).sqrt();
         let height = 0.75_f64.sqrt() * spacing;
-        let columns = (f64::from(self.agents) * 0.75_f64.sqrt()).sqrt().round();
-        let columns = (columns as u32).max(1);
+        let wanted = (f64::from(self.agents) * 0.75_f64.sqrt()).sqrt().round();
+        let columns = (wanted as u32).max(1);
         let rows = self.agents.div_ceil(columns);
         let row = |k: u32| {
             let shift = 0.5 * spacing * f64::from(k % 2);
@@ -126,8 +126,7 @@ impl Crowd {
             };
             grid.positions(seed, k * columns).collect::<Vec<_>>()
         };
-        let places = (0..rows).flat_map(row);
-        places.take(self.agents as usize).collect()
+        (0..rows).flat_map(row).take(self.agents as usize).collect()
     }
 
     /// The crowd after `frames` frames.

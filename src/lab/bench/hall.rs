@@ -29,11 +29,11 @@ pub fn settled(
     frames: u64,
     walking_law: &str,
 ) -> Result<Simulation, LabError> {
-    let mut scenario = scenario(columns, rows);
-    scenario["parameters"] = json!({ "walking_law": walking_law });
-    let text = scenario.to_string();
-    let scenario = Scenario::parse(&text, "hall", &[]);
-    let scenario = scenario.map_err(|error| LabError::of("hall", error))?;
+    let mut document = scenario(columns, rows);
+    document["parameters"] = json!({ "walking_law": walking_law });
+    let text = document.to_string();
+    let parsed = Scenario::parse(&text, "hall", &[]);
+    let scenario = parsed.map_err(|error| LabError::of("hall", error))?;
     let mut simulation = Simulation::new(scenario.scene).map_err(failed)?;
     ms_per_frame(&mut simulation, frames)?;
     Ok(simulation)
@@ -58,8 +58,8 @@ fn scenario(columns: u32, rows: u32) -> Value {
         [width, height],
         [0.0, height]
     ]);
-    let bays = (0..columns).flat_map(|x| (0..rows).map(move |y| [x, y].map(f64::from)));
-    let bays: Vec<[f64; 2]> = bays.collect();
+    let places = (0..columns).flat_map(|x| (0..rows).map(move |y| [x, y].map(f64::from)));
+    let bays: Vec<[f64; 2]> = places.collect();
     let around = |[x, y]: [f64; 2], place: [f64; 2], size: [f64; 2]| {
         let middle = [(x + place[0]) * PITCH[0], (y + place[1]) * PITCH[1]];
         let end = |side: f64| [0, 1].map(|k| middle[k] + side * size[k]);

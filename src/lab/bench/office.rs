@@ -26,10 +26,10 @@ const PEOPLE: u32 = 50;
 /// # Errors
 /// The simulation fails.
 pub fn settled(corridors: u32, frames: u64, route_choice: &str) -> Result<Simulation, LabError> {
-    let mut scenario = scenario(corridors);
-    scenario["route_choice"] = json!(route_choice);
-    let scenario = Scenario::parse(&scenario.to_string(), "office floor", &[]);
-    let scenario = scenario.map_err(|error| LabError::of("office floor", error))?;
+    let mut document = scenario(corridors);
+    document["route_choice"] = json!(route_choice);
+    let parsed = Scenario::parse(&document.to_string(), "office floor", &[]);
+    let scenario = parsed.map_err(|error| LabError::of("office floor", error))?;
     let mut simulation = Simulation::new(scenario.scene).map_err(failed)?;
     ms_per_frame(&mut simulation, frames)?;
     Ok(simulation)

@@ -123,22 +123,22 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Timings, LabError> {
         let row = rows.find(|row| row.crowd == crowd && row.agents == agents);
         row.map(|row| row.ns_per_agent_frame.median)
     };
-    let ratios = rows.iter().map(|row| {
+    let computed = rows.iter().map(|row| {
         let own = row.ns_per_agent_frame.median;
         let to = |other: Option<f64>| other.map(|other| own / other);
         let reference = median(row.crowd, REFERENCE);
         [to(reference), to(median(AT_REST, row.agents))]
     });
-    let ratios: Vec<_> = ratios.collect();
+    let ratios: Vec<_> = computed.collect();
     for (row, ratios) in rows.iter_mut().zip(ratios) {
         [row.ratio_to_10000, row.ratio_to_rest] = ratios;
     }
-    let memory = "Memory is what the process holds with the crowd running, and at its peak, minus what it held before \
+    let words = "Memory is what the process holds with the crowd running, and at its peak, minus what it held before \
                   the first crowd. It includes the program and its threads: below about 100,000 agents it means \
                   little.";
     let unknown =
         "The memory of a process is read from /proc/self/status, which this system does not have.";
-    let memory = if before.is_some() { memory } else { unknown };
+    let memory = if before.is_some() { words } else { unknown };
     Ok(Timings {
         table: table(&rows),
         sheet: picture(&rows),
@@ -172,11 +172,11 @@ fn measure(
     let ms_per_frame = Range::of(&times.collect::<Result<Vec<f64>, _>>()?);
     let now = Resident::read();
     let per_agent = |bytes: u64| bytes as f64 / f64::from(agents);
-    let resident = before.zip(now);
-    let resident = resident.map(|(b, n)| per_agent(n.now.saturating_sub(b.now)));
+    let both = before.zip(now);
+    let resident = both.map(|(b, n)| per_agent(n.now.saturating_sub(b.now)));
     // A crowd that needs no more memory than an earlier one has no peak of its own.
-    let peak = before.zip(peak_before.zip(now));
-    let peak = peak.filter(|(_, (then, now))| now.peak > then.peak);
+    let peaks = before.zip(peak_before.zip(now));
+    let peak = peaks.filter(|(_, (then, now))| now.peak > then.peak);
     let stages = simulation.stages();
     let listing = [Stage::Sort, Stage::Neighbors].map(|stage| ms_of(stages, stage));
     Ok(Size {
@@ -212,12 +212,11 @@ fn table(rows: &[Size]) -> Table {
 
 fn picture(rows: &[Size]) -> Sheet {
     let point = |row: &Size| (f64::from(row.agents), row.ns_per_agent_frame);
-    let kinds = KINDS.iter().enumerate();
-    let marks = kinds.flat_map(|(k, kind)| {
+    let drawn = KINDS.iter().enumerate().flat_map(|(k, kind)| {
         let own = rows.iter().filter(|row| row.crowd == kind.name);
         medians(&own.map(point).collect::<Vec<_>>(), color(k), kind.name)
     });
-    let marks: Vec<Mark> = marks.collect();
+    let marks: Vec<Mark> = drawn.collect();
     let points = rows.iter().map(point);
     let most = points.clone().map(|(_, range)| range.maximum);
     let times = [0.0, 1.1 * most.fold(1.0, f64::max)];

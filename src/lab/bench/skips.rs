@@ -117,9 +117,9 @@ pub const SKIPS: [Skip; 11] = [
 
 /// More needs than a scene has.
 fn more(simulation: &Simulation, add: fn(&mut Needs)) -> Result<Undone, &'static str> {
-    let mut needs = *simulation.needs();
-    add(&mut needs);
-    let needs = simulation.needs().with(&needs);
+    let mut own = *simulation.needs();
+    add(&mut own);
+    let needs = simulation.needs().with(&own);
     match needs == *simulation.needs() {
         true => Err("the scene needs it"),
         false => Ok(Undone::Needs(needs)),
@@ -197,11 +197,11 @@ fn measure(started: &Started, plan: &Plan) -> Result<Vec<Saving>, LabError> {
     let mut without = [const { Vec::new() }; SKIPS.len()];
     for _ in 0..plan.repeats {
         let mut base = Course::new(start, None)?;
-        let others = SKIPS.iter().map(|skip| match (skip.undo)(start) {
+        let undone = SKIPS.iter().map(|skip| match (skip.undo)(start) {
             Ok(undone) => Course::new(start, Some(undone)).map(Some),
             Err(_) => Ok(None),
         });
-        let mut others: Vec<Option<Course>> = others.collect::<Result<_, _>>()?;
+        let mut others: Vec<Option<Course>> = undone.collect::<Result<_, _>>()?;
         // All of them take turns of a few frames.
         let mut left = started.frames;
         while left > 0 {

@@ -84,9 +84,9 @@ pub fn begin(stretch: &Stretch, plan: &Plan, profile: Option<&str>) -> Result<St
     let &(name, from, lasting) = stretch;
     let usual = MEASURED_WITH.iter().find(|(scene, _)| *scene == name);
     let profile = profile.or(usual.map(|(_, profile)| *profile));
-    let setting = profile.map(|profile| format!("profile={profile}").parse::<Setting>());
-    let setting = setting.transpose();
-    let setting = setting.map_err(|error| LabError::Data(error.to_string()))?;
+    let typed = profile.map(|profile| format!("profile={profile}").parse::<Setting>());
+    let parsed = typed.transpose();
+    let setting = parsed.map_err(|error| LabError::Data(error.to_string()))?;
     let scenario = scenario(name, setting)?;
     let mut simulation = Simulation::new(scenario.scene).map_err(failed)?;
     let (from, lasting) = plan.choose((from, lasting), QUICK_STRETCH);
@@ -104,12 +104,12 @@ pub fn begin(stretch: &Stretch, plan: &Plan, profile: Option<&str>) -> Result<St
 /// A scenario of the folder `scenarios/`, with the floor plan of the same name if there is one, and a setting.
 fn scenario(name: &str, setting: Option<Setting>) -> Result<Scenario, LabError> {
     let [file, plan] = ["json", "geojson"].map(|format| format!("{name}.{format}"));
-    let text = built_in(Path::new(&file));
-    let text = text.ok_or_else(|| LabError::Data(format!("{file} is not built in")))?;
+    let found = built_in(Path::new(&file));
+    let text = found.ok_or_else(|| LabError::Data(format!("{file} is not built in")))?;
     let mut settings = Vec::from_iter(setting);
     if let Some(text) = built_in(Path::new(&plan)) {
-        let floor = floor_plan::parse(text);
-        let floor = floor.map_err(|error| LabError::Data(format!("{plan}: {error}")))?;
+        let parsed = floor_plan::parse(text);
+        let floor = parsed.map_err(|error| LabError::Data(format!("{plan}: {error}")))?;
         settings.extend(Setting::floor_plan(&floor, &plan));
     }
     Scenario::parse(text, &file, &settings).map_err(|error| LabError::of(name, error))
@@ -130,54 +130,15 @@ struct Divided {
 }
 
 fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Timings, LabError> {
+    let sizes = Sizes::of(plan);
     let mut rows = Vec::new();
     for stretch in busiest(plan) {
         say(stretch.0);
         rows.extend(in_turns([begin(stretch, plan, None)], plan)?);
     }
-    let agents = plan.choose(10_000, 400);
-    let before = plan.choose(50, 5);
-    let streaming = plan.choose(25, 5);
-    let streams = ["sf", "rvo"].map(|profile| {
-        say(&format!("{agents} agents at 4 P/m², {profile}"));
-        Ok(Started {
-            name: "streams, 4 P/m²",
-            profile: profile.to_owned(),
-            simulation: Crowd::streams(agents, profile).settled(before)?,
-            measurements: Vec::new(),
-            frames: streaming,
-        })
-    });
-    rows.extend(in_turns(streams, plan)?);
-    let bays = plan.choose([13, 5], [2, 1]);
-    let walking = plan.choose(100, 5);
-    let halls = LAWS.map(|law| {
-        say(&format!("hall with pillars, walking law {law}"));
-        Ok(Started {
-            name: "hall with pillars",
-            profile: match law {
-                "none" => "sph".to_owned(),
-                law => format!("sph, {law}"),
-            },
-            simulation: hall::settled(bays, before, law)?,
-            measurements: Vec::new(),
-            frames: walking,
-        })
-    });
-    rows.extend(in_turns(halls, plan)?);
-    let corridors = plan.choose(10, 1);
-    let leaving = plan.choose(250, 5);
-    let offices = ["shortest", "quickest"].map(|choice| {
-        say(&format!("office floor, {choice} ways"));
-        Ok(Started {
-            name: "office floor",
-            profile: format!("walk+sph, {choice}"),
-            simulation: office::settled(corridors, leaving, choice)?,
-            measurements: Vec::new(),
-            frames: leaving,
-        })
-    });
-    rows.extend(in_turns(offices, plan)?);
+    rows.extend(in_turns(sizes.streams(say), plan)?);
+    rows.extend(in_turns(sizes.halls(say), plan)?);
+    rows.extend(in_turns(sizes.offices(say), plan)?);
     let swaying = SWAYING.map(|profile| {
         say(&format!("swaying crowd, {profile}"));
         let started = begin(&SWAY, plan, Some(profile))?;
@@ -187,38 +148,121 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Timings, LabError> {
         })
     });
     rows.extend(in_turns(swaying, plan)?);
-    let stretches = busiest(plan).iter().map(|&(name, from, lasting)| {
-        let (from, lasting) = plan.choose((from, lasting), QUICK_STRETCH);
-        format!("{name} {from}–{} s", from + lasting)
-    });
-    let stretches = stretches.collect::<Vec<_>>().join(", ");
-    let sway = plan.choose((SWAY.1, SWAY.2), QUICK_STRETCH);
-    let until = |frames: u64| PAPER_TIME_STEP * (before + frames) as f64;
-    let from = until(0);
     Ok(Timings {
         table: table(&rows),
         sheet: picture(&rows),
         rows: json!(rows),
-        notes: vec![format!(
+        notes: vec![sizes.note(plan)],
+    })
+}
+
+/// The sizes of the crowds that no file has, and the numbers of frames before they are timed and while.
+struct Sizes {
+    /// The agents in streams.
+    agents: u32,
+    /// The frames in which streams and halls settle.
+    before: u64,
+    streaming: u64,
+    /// The columns and rows of pillars in the hall.
+    bays: [u32; 2],
+    walking: u64,
+    corridors: u32,
+    /// The frames in which people leave offices, before and while they are timed.
+    leaving: u64,
+}
+
+impl Sizes {
+    fn of(plan: &Plan) -> Self {
+        Self {
+            agents: plan.choose(10_000, 400),
+            before: plan.choose(50, 5),
+            streaming: plan.choose(25, 5),
+            bays: plan.choose([13, 5], [2, 1]),
+            walking: plan.choose(100, 5),
+            corridors: plan.choose(10, 1),
+            leaving: plan.choose(250, 5),
+        }
+    }
+
+    fn streams(&self, say: &dyn Fn(&str)) -> [Result<Started, LabError>; 2] {
+        ["sf", "rvo"].map(|profile| {
+            say(&format!("{} agents at 4 P/m², {profile}", self.agents));
+            let simulation = Crowd::streams(self.agents, profile).settled(self.before)?;
+            let name = "streams, 4 P/m²";
+            Ok(Started::settled(name, profile, simulation, self.streaming))
+        })
+    }
+
+    fn halls(&self, say: &dyn Fn(&str)) -> [Result<Started, LabError>; LAWS.len()] {
+        LAWS.map(|law| {
+            say(&format!("hall with pillars, walking law {law}"));
+            let profile = match law {
+                "none" => "sph".to_owned(),
+                law => format!("sph, {law}"),
+            };
+            let simulation = hall::settled(self.bays, self.before, law)?;
+            let name = "hall with pillars";
+            Ok(Started::settled(name, &profile, simulation, self.walking))
+        })
+    }
+
+    fn offices(&self, say: &dyn Fn(&str)) -> [Result<Started, LabError>; 2] {
+        ["shortest", "quickest"].map(|choice| {
+            say(&format!("office floor, {choice} ways"));
+            let profile = format!("walk+sph, {choice}");
+            let simulation = office::settled(self.corridors, self.leaving, choice)?;
+            Ok(Started::settled(
+                "office floor",
+                &profile,
+                simulation,
+                self.leaving,
+            ))
+        })
+    }
+
+    /// What the rows are.
+    fn note(&self, plan: &Plan) -> String {
+        let named = busiest(plan).iter().map(|&(name, from, lasting)| {
+            let (from, lasting) = plan.choose((from, lasting), QUICK_STRETCH);
+            format!("{name} {from}–{} s", from + lasting)
+        });
+        let stretches = named.collect::<Vec<_>>().join(", ");
+        let (sway, swaying) = plan.choose((SWAY.1, SWAY.2), QUICK_STRETCH);
+        let until = |frames: u64| PAPER_TIME_STEP * (self.before + frames) as f64;
+        format!(
             "Stages are medians, in ms per frame; every repeat takes the same frames. Shipped scenarios, \
-             with these profiles: {stretches}. Streams: {agents} agents from {from:.1} to {:.1} s, half of them \
+             with these profiles: {stretches}. Streams: {} agents from {from:.1} to {:.1} s, half of them \
              walking to the right and \
              half to the left. Hall: {} pillars stand between the agents, at 4.7 P/m², and their goal; from {from:.1} \
              to {:.1} s, without and with a walking law. Office floor: {} people leave {} rooms from {:.1} to {:.1} s, \
-             by the shortest or by the quickest ways. Swaying crowd: questions/sway.json from {} to {} s; with `sph` \
-             it is at rest. Rows of one crowd take turns. Measuring: the scenario's measurements and the search for \
-             agents that stand, as in every run; it is not part of the frame. – : a stage that never runs.",
-            until(streaming),
-            bays[0] * bays[1],
-            until(walking),
-            1000 * corridors,
-            20 * corridors,
-            PAPER_TIME_STEP * leaving as f64,
-            PAPER_TIME_STEP * 2.0 * leaving as f64,
-            sway.0,
-            sway.0 + sway.1,
-        )],
-    })
+             by the shortest or by the quickest ways. Swaying crowd: questions/sway.json from {sway} to {} s; with \
+             `sph` it is at rest. Rows of one crowd take turns. Measuring: the scenario's measurements and the search \
+             for agents that stand, as in every run; it is not part of the frame. – : a stage that never runs.",
+            self.agents,
+            until(self.streaming),
+            self.bays[0] * self.bays[1],
+            until(self.walking),
+            1000 * self.corridors,
+            20 * self.corridors,
+            PAPER_TIME_STEP * self.leaving as f64,
+            PAPER_TIME_STEP * 2.0 * self.leaving as f64,
+            sway + swaying,
+            from = until(0),
+        )
+    }
+}
+
+impl Started {
+    /// A crowd that has settled, without measurements.
+    fn settled(name: &'static str, profile: &str, simulation: Simulation, frames: u64) -> Self {
+        Self {
+            name,
+            profile: profile.to_owned(),
+            simulation,
+            measurements: Vec::new(),
+            frames,
+        }
+    }
 }
 
 /// Measures crowds, which take turns.
@@ -246,8 +290,8 @@ fn divided(started: Started, times: &[(StageTimes, f64)]) -> Divided {
         Range::of(&values)
     };
     let measuring: Vec<f64> = times.iter().map(|&(_, ms)| ms).collect();
-    let stages = Stage::ALL.map(|stage| (stage.name(), range(&|times| ms_of(times, stage))));
-    let stages = stages.into_iter().filter(|(_, range)| range.maximum > 0.0);
+    let all = Stage::ALL.map(|stage| (stage.name(), range(&|times| ms_of(times, stage))));
+    let stages = all.into_iter().filter(|(_, range)| range.maximum > 0.0);
     Divided {
         crowd: started.name,
         agents: started.simulation.frame().agents.len(),

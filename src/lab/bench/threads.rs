@@ -72,10 +72,10 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Timings, LabError> {
 fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Speed>, LabError> {
     let crowd = Crowd::concert(agents).settled(plan.choose(SETTLING, 5))?;
     let frames = plan.frames(agents, AGENT_FRAMES, FRAMES);
-    let contenders = counts
+    let begun = counts
         .iter()
         .map(|&threads| going_on(crowd.clone(), threads));
-    let mut contenders = contenders.collect::<Result<Vec<_>, _>>()?;
+    let mut contenders = begun.collect::<Result<Vec<_>, _>>()?;
     alternate(&mut contenders, 1, frames)?; // warm-up: fills the caches
     let times = alternate(&mut contenders, plan.repeats, frames)?;
     let row = |(&threads, ms): (&usize, &Vec<f64>)| {
@@ -111,8 +111,8 @@ fn picture(rows: &[Speed], counts: &[usize]) -> Sheet {
         let label = format!("{} agents", size[0].agents);
         marks.extend(medians(&points.collect::<Vec<_>>(), color(k), &label));
     }
-    let most = rows.iter().map(|row| row.speed_up.maximum);
-    let most = 1.1 * most.fold(all, f64::max);
+    let speed_ups = rows.iter().map(|row| row.speed_up.maximum);
+    let most = 1.1 * speed_ups.fold(all, f64::max);
     let ticks = counts.iter().map(|&k| (k as f64, k.to_string()));
     let x = Axis::linear("threads", [0.8, all + 0.2]).ticked(ticks);
     let y = Axis::linear("times as fast as on one thread", [0.0, most]);

@@ -68,8 +68,7 @@ pub fn warmed(start: &Simulation) -> Result<Simulation, LabError> {
 
 /// Milliseconds per frame of one stage; 0 if it never ran.
 pub fn ms_of(times: &StageTimes, wanted: Stage) -> f64 {
-    let mut stages = times.ms_per_frame();
-    let found = stages.find(|(stage, _)| *stage == wanted);
+    let found = times.ms_per_frame().find(|(stage, _)| *stage == wanted);
     found.map_or(0.0, |(_, ms)| ms)
 }
 

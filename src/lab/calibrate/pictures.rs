@@ -39,8 +39,8 @@ fn convergence(report: &Report) -> Sheet {
     let start = report.found.trials[0].misfit;
     let misfits =
         |of: fn(&Generation) -> f64| numbered().map(move |(x, one)| [x, of(one).max(LEAST_SHOWN)]);
-    let ends = misfits(|of| of.misfits.minimum).chain(misfits(|of| of.misfits.maximum));
-    let ends = ends.map(|at| at[1]).chain([start.max(LEAST_SHOWN)]);
+    let both = misfits(|of| of.misfits.minimum).chain(misfits(|of| of.misfits.maximum));
+    let ends = both.map(|at| at[1]).chain([start.max(LEAST_SHOWN)]);
     let label = "misfit: root mean square residual [tolerances]";
     let y = Axis::log(label, positive(ends, [0.8, 1.25]));
     let unchanged = Style::broken(GRAY, 1.0, "start");
@@ -56,8 +56,8 @@ fn convergence(report: &Report) -> Sheet {
         Mark::line(misfits(|of| of.best), so_far),
     ];
     let every = generations.len().div_ceil(12).max(1);
-    let ticks = (1..=generations.len()).step_by(every);
-    let ticks = ticks.map(|k| (k as f64, k.to_string()));
+    let numbers = (1..=generations.len()).step_by(every);
+    let ticks = numbers.map(|k| (k as f64, k.to_string()));
     let x = Axis::linear("generation", [1.0, last]).ticked(ticks);
     let searched = report.found.searched.iter().enumerate();
     let curves = searched.flat_map(|(j, &k)| {
@@ -83,9 +83,9 @@ fn convergence(report: &Report) -> Sheet {
 fn errors(report: &Report) -> Sheet {
     let values = report.values();
     let shown = |residual: f64| residual.clamp(-MOST_SHOWN, MOST_SHOWN);
-    let residuals = values.iter();
-    let residuals = residuals.flat_map(|value| [value.start.residual, value.best.residual]);
-    let residuals = residuals.flatten().map(|residual| shown(residual).abs());
+    let of_values = values.iter();
+    let known = of_values.flat_map(|value| [value.start.residual, value.best.residual]);
+    let residuals = known.flatten().map(|residual| shown(residual).abs());
     let far = residuals.fold(2.0, f64::max) * 1.05;
     let width = 2.0 * far * NAMES / 300.0;
     let rows = values.len() as f64;
@@ -97,14 +97,14 @@ fn errors(report: &Report) -> Sheet {
     marks.extend(names(&report.calibration.targets, -far - width, height));
     for (k, value) in values.iter().enumerate() {
         if let (Some(residual), Some(noise)) = (value.best.residual, value.best.noise) {
-            let ends = [-1.96, 1.96].map(|side| shown(residual) + side * noise);
-            let ends = ends.map(|end| [end.clamp(-far, far), height(k)]);
+            let beside = [-1.96, 1.96].map(|side| shown(residual) + side * noise);
+            let ends = beside.map(|end| [end.clamp(-far, far), height(k)]);
             marks.push(Mark::line(ends, Style::full(color(value.set), 0.8, "")));
         }
     }
     let dots = |residual: fn(&ValueResult) -> Option<f64>, of: Option<Set>, style| {
-        let own = values.iter().enumerate();
-        let own = own.filter(|(_, value)| of.is_none_or(|set| value.set == set));
+        let numbered = values.iter().enumerate();
+        let own = numbered.filter(|(_, value)| of.is_none_or(|set| value.set == set));
         let points = own.filter_map(|(k, value)| Some([shown(residual(value)?), height(k)]));
         Mark::dots(points, style)
     };
@@ -135,9 +135,8 @@ fn color(set: Set) -> Rgb {
 
 /// Round numbers from −`far` to `far`.
 fn ticks(far: f64) -> impl Iterator<Item = (f64, String)> {
-    let steps = [1.0, 2.0, 5.0];
-    let step = steps.into_iter().find(|step| far / step < 6.0);
-    let step = step.unwrap_or(5.0);
+    let fitting = [1.0, 2.0, 5.0].into_iter().find(|step| far / step < 6.0);
+    let step = fitting.unwrap_or(5.0);
     let most = (far / step) as i32;
     let values = (-most..=most).map(move |k| f64::from(k) * step);
     values.map(|value| (value, value.to_string().replace('-', "\u{2212}")))
@@ -163,16 +162,16 @@ fn names<'a>(
 
 /// The effects of the parameters on the misfit, and on each value.
 fn screening(report: &Report, screened: &Screened) -> Sheet {
-    let parameters = report.calibration.parameters.iter();
-    let parameters: Vec<&str> = parameters.map(|of| of.name.as_str()).collect();
+    let all = report.calibration.parameters.iter();
+    let parameters: Vec<&str> = all.map(|of| of.name.as_str()).collect();
     let most = |of: fn(&Effect) -> f64| screened.misfit.iter().map(of).fold(1.0, f64::max);
     let label = "μ*: mean absolute effect on the misfit [tolerances]";
     let x = Axis::linear(label, [0.0, 1.35 * most(|of| of.mean_absolute)]);
     // Names lie above and below their points.
     let ends = [-0.1, 1.0].map(|end| end * 1.15 * most(|of| of.deviation));
     let y = Axis::linear("σ: its standard deviation", ends);
-    let places = screened.misfit.iter();
-    let places = places.map(|of| [of.mean_absolute, of.deviation]);
+    let effects = screened.misfit.iter();
+    let places = effects.map(|of| [of.mean_absolute, of.deviation]);
     let dots = Mark::dots(places.clone(), Style::full(LINES[0], 2.4, ""));
     let named = places.zip(&parameters).zip([1, -1].into_iter().cycle());
     let labels = named.map(|((at, name), above)| Mark::label(at, [1, above], format!(" {name}")));
@@ -190,8 +189,8 @@ fn screening(report: &Report, screened: &Screened) -> Sheet {
 fn map(report: &Report, screened: &Screened, parameters: &[&str]) -> Panel {
     let rows = screened.values.len();
     let value = |effect: &Effect| effect.mean_absolute;
-    let largest = screened.values.iter().flatten().map(value);
-    let largest = largest.fold(1.0, f64::max);
+    let effects = screened.values.iter().flatten().map(value);
+    let largest = effects.fold(1.0, f64::max);
     let width = NAMES / COLUMN;
     let mut x = Axis::names("", parameters.iter().map(|name| (*name).to_owned()));
     x.range[0] = -width;
@@ -210,8 +209,8 @@ fn map(report: &Report, screened: &Screened, parameters: &[&str]) -> Panel {
             in_cell([j, rows - 1 - k], text, value > 0.5 * largest)
         }));
     }
-    let fitted = report.calibration.targets.iter();
-    let fitted = fitted.filter(|target| target.set == Set::Fit);
+    let targets = report.calibration.targets.iter();
+    let fitted = targets.filter(|target| target.set == Set::Fit);
     let height = |k: usize| rows as f64 - 0.5 - k as f64;
     panel.marks.extend(names(fitted, -width, height));
     panel

@@ -6,7 +6,7 @@ use super::file::{SceneKeys, ValueKeys};
 use super::parameter::check_text;
 use super::parameter::places;
 use super::scene::{Scene, Set, Target};
-use crate::suite::{Check, Expected, Suite};
+use crate::suite::{Case as SuiteCase, Check, Expected, Suite};
 use crate::sweep::{Changes, Entries, Study, Written, source};
 use runs::case::Case;
 use runs::memory::Memory;
@@ -57,47 +57,18 @@ impl<'a> Reader<'a> {
         let (suite, study) = self
             .validation()
             .map_err(|error| Problem::new(place, error))?;
-        let Some(case) = suite.without_data().find(|case| case.name == id) else {
-            let ids: Vec<&str> = suite
-                .without_data()
-                .map(|case| case.name.as_str())
-                .collect();
-            let near = suggestion(id, ids.iter().copied());
-            let reason = format!(
-                "no case is called `{}`{near} (there are {})",
-                shown(id),
-                ids.join(", ")
-            );
-            return Err(Problem::new(at("case"), reason));
-        };
-        let measured = case
-            .checks
-            .iter()
-            .filter(|check| check.expected.is_measured());
-        let measured: Vec<&Check> = measured.collect();
+        let case = named(suite, id).map_err(|reason| Problem::new(at("case"), reason))?;
+        let checks = case.checks.iter();
+        let measured: Vec<&Check> = checks
+            .filter(|check| check.expected.is_measured())
+            .collect();
         let all = measured.iter().map(|check| ValueKeys::of(&check.name));
-        let all: Vec<ValueKeys> = all.collect();
-        for (k, wanted) in keys.values.as_ref().unwrap_or(&all).iter().enumerate() {
+        let by_default: Vec<ValueKeys> = all.collect();
+        let values = keys.values.as_ref().unwrap_or(&by_default);
+        for (k, wanted) in values.iter().enumerate() {
             let place = format!("{place}.values[{k}]");
-            let is_meant = |check: &&&Check| {
-                let rest = check.name.strip_prefix(wanted.quantity.as_str());
-                rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
-            };
-            let meant: Vec<&&Check> = measured.iter().filter(is_meant).collect();
-            if meant.is_empty() {
-                let names: Vec<&str> = measured.iter().map(|check| check.name.as_str()).collect();
-                let reason = format!(
-                    "case {id} has no quantity `{}`; it has {}",
-                    shown(&wanted.quantity),
-                    names.join(", ")
-                );
-                return Err(Problem::new(place, reason));
-            }
-            if meant.len() > 1 && wanted.value.is_some() {
-                let reason = format!("means {} quantities, and gives one value", meant.len());
-                return Err(Problem::new(place, reason));
-            }
-            for &&check in &meant {
+            let meant = meant(wanted, id, &measured);
+            for check in meant.map_err(|reason| Problem::new(&place, reason))? {
                 let (
                     [run],
                     Expected::Near {
@@ -146,10 +117,10 @@ impl<'a> Reader<'a> {
         let name = keys.name.clone().unwrap_or_else(|| shown(file));
         check_text(&name, &at("name"))?;
         let scene = self.scene(name.clone(), base, &keys.settings, place)?;
-        let scenario = self.scenes[scene].case.scenario();
-        let scenario = scenario.map_err(|error| Problem::new(place, error.to_string()))?;
-        let metrics = scenario.measurements.iter().flat_map(Measurement::names);
-        let metrics: Vec<String> = metrics.collect();
+        let read = self.scenes[scene].case.scenario();
+        let scenario = read.map_err(|error| Problem::new(place, error.to_string()))?;
+        let names = scenario.measurements.iter().flat_map(Measurement::names);
+        let metrics: Vec<String> = names.collect();
         for (k, wanted) in given.iter().enumerate() {
             let place = format!("{place}.values[{k}]");
             let quantity = &wanted.quantity;
@@ -205,8 +176,8 @@ impl<'a> Reader<'a> {
         place: &str,
     ) -> Result<usize, Problem> {
         let refused = |place: &str, error: String| Problem::new(place, error);
-        let document = base.scenario().map(|scenario| scenario.document);
-        let document = document.map_err(|error| refused(place, error.to_string()))?;
+        let read = base.scenario().map(|scenario| scenario.document);
+        let document = read.map_err(|error| refused(place, error.to_string()))?;
         let mut settings = Vec::new();
         for (inside, entries) in [
             ("settings".to_owned(), self.settings),
@@ -220,8 +191,8 @@ impl<'a> Reader<'a> {
                 }
             }
         }
-        let case = base.with(settings, self.memory);
-        let case = case.map_err(|error| refused(place, error.to_string()))?;
+        let changed = base.with(settings, self.memory);
+        let case = changed.map_err(|error| refused(place, error.to_string()))?;
         if let Some(known) = self
             .scenes
             .iter()
@@ -229,8 +200,8 @@ impl<'a> Reader<'a> {
         {
             return Ok(known);
         }
-        let scenario = case.scenario();
-        let scenario = scenario.map_err(|error| refused(place, error.to_string()))?;
+        let read = case.scenario();
+        let scenario = read.map_err(|error| refused(place, error.to_string()))?;
         self.scenes.push(Scene {
             name,
             case,
@@ -269,5 +240,43 @@ impl<'a> Reader<'a> {
         }
         self.targets.push(target);
         Ok(())
+    }
+}
+
+/// The case of a suite with this name; else why there is none.
+fn named<'s>(suite: &'s Suite, name: &str) -> Result<&'s SuiteCase, String> {
+    let mut cases = suite.without_data();
+    cases.find(|case| case.name == name).ok_or_else(|| {
+        let names = suite.without_data().map(|case| case.name.as_str());
+        let known: Vec<&str> = names.collect();
+        let near = suggestion(name, known.iter().copied());
+        let (name, known) = (shown(name), known.join(", "));
+        format!("no case is called `{name}`{near} (there are {known})")
+    })
+}
+
+/// The checks of a case that a value means: those whose name begins with its quantity; else why there are none.
+fn meant<'c>(
+    wanted: &ValueKeys,
+    case: &str,
+    measured: &[&'c Check],
+) -> Result<Vec<&'c Check>, String> {
+    let is_meant = |check: &&&Check| {
+        let rest = check.name.strip_prefix(wanted.quantity.as_str());
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
+    };
+    let meant: Vec<&Check> = measured.iter().filter(is_meant).copied().collect();
+    match meant.len() {
+        0 => {
+            let known: Vec<&str> = measured.iter().map(|check| check.name.as_str()).collect();
+            let (quantity, known) = (shown(&wanted.quantity), known.join(", "));
+            Err(format!(
+                "case {case} has no quantity `{quantity}`; it has {known}"
+            ))
+        }
+        count if count > 1 && wanted.value.is_some() => {
+            Err(format!("means {count} quantities, and gives one value"))
+        }
+        _ => Ok(meant),
     }
 }

@@ -94,15 +94,15 @@ impl Scene {
 
     /// The reason why a run is stuck; `None` if it is not.
     fn stuck(&self, run: &RunResult, secs: f64) -> Option<String> {
-        let waiting = run.summary.backlogs.iter();
-        let waiting: u32 = waiting.map(|backlog| backlog.at_end).sum();
+        let backlogs = run.summary.backlogs.iter();
+        let waiting: u32 = backlogs.map(|backlog| backlog.at_end).sum();
         let left = run.summary.remaining + waiting as usize;
         if !self.ends_empty || left == 0 {
             return None;
         }
         let exits = run.summary.places.iter();
-        let last = exits.filter_map(|exit| Some(exit.from_to_secs?[1]));
-        let last = last.max_by(f64::total_cmp);
+        let ends = exits.filter_map(|exit| Some(exit.from_to_secs?[1]));
+        let last = ends.max_by(f64::total_cmp);
         let idle = run.summary.time_secs - last.unwrap_or_default();
         (idle > secs).then(|| match last {
             Some(last) => {

@@ -164,14 +164,14 @@ impl Stages<'_> {
         };
         let design = Trajectories::new(of.parameters.len(), screening.trajectories, screening.seed);
         let first = self.trials.len();
-        let misfits = self.add("screening", Stage::Screening, &design.points)?;
+        let measured = self.add("screening", Stage::Screening, &design.points)?;
         let trials = &self.trials[first..];
-        let values = self.targets.iter().enumerate().map(|(k, target)| {
+        let effects = self.targets.iter().enumerate().map(|(k, target)| {
             let value = |trial: &Trial| residual(&trial.evaluated.samples[k], target, &of.rule);
             design.effects(&trials.iter().map(value).collect::<Vec<_>>())
         });
-        let values = values.collect();
-        let misfits: Vec<Option<f64>> = misfits.into_iter().map(Some).collect();
+        let values = effects.collect();
+        let misfits: Vec<Option<f64>> = measured.into_iter().map(Some).collect();
         Ok(Some(Screened {
             misfit: design.effects(&misfits),
             values,
@@ -220,10 +220,10 @@ impl Stages<'_> {
             if spread.iter().all(|&spread| spread < CONVERGED) {
                 break;
             }
-            let asked = search.ask().into_iter();
-            let asked = asked.map(|own| own.into_iter().map(reflected).collect());
-            let asked: Vec<Vec<f64>> = asked.collect();
-            let points = asked.iter().map(|own| {
+            let drawn = search.ask().into_iter();
+            let inside = drawn.map(|own| own.into_iter().map(reflected).collect());
+            let asked: Vec<Vec<f64>> = inside.collect();
+            let placed = asked.iter().map(|own| {
                 let mut point = start.clone();
                 searched
                     .iter()
@@ -231,12 +231,12 @@ impl Stages<'_> {
                     .for_each(|(&k, &value)| point[k] = value);
                 point
             });
-            let points: Vec<Vec<f64>> = points.collect();
+            let points: Vec<Vec<f64>> = placed.collect();
             let name = format!("generation {number} of {}", of.search.generations);
-            let misfits = self.add(&name, Stage::Generation(number), &points)?;
-            search.tell(&asked, &misfits);
+            let found = self.add(&name, Stage::Generation(number), &points)?;
+            search.tell(&asked, &found);
             let best = self.trials[self.best()].misfit;
-            let misfits = Range::of(&misfits);
+            let misfits = Range::of(&found);
             self.evaluator.listener.notes(&format!(
                 "{name}: {:.2} to {:.2} tolerances, the best of all {best:.2}",
                 misfits.minimum, misfits.maximum
@@ -254,14 +254,14 @@ impl Stages<'_> {
     /// The identifiability of the parameters, from the slopes of the residuals around the best trial.
     fn knowledge(&mut self, best: usize, searched: &[usize]) -> Result<Knowledge, LabError> {
         let center = self.trials[best].evaluated.point.clone();
-        let ends = searched.iter().flat_map(|&k| {
+        let shifted = searched.iter().flat_map(|&k| {
             [-SLOPE_STEP, SLOPE_STEP].map(|step| {
                 let mut point = center.clone();
                 point[k] = (point[k] + step).clamp(0.0, 1.0);
                 point
             })
         });
-        let ends: Vec<Vec<f64>> = ends.collect();
+        let ends: Vec<Vec<f64>> = shifted.collect();
         let first = self.trials.len();
         self.add("slopes at the best point", Stage::Slopes, &ends)?;
         let (before, pairs) = self.trials.split_at(first);
@@ -271,7 +271,7 @@ impl Stages<'_> {
         let squares = best.misfit.powi(2) * self.targets.len() as f64;
         let unexplained = (squares / free.max(1.0)).max(1.0);
         let slopes = self.targets.iter().enumerate().map(|(target, of)| {
-            let differences = searched.iter().enumerate().map(|(j, &parameter)| {
+            let changes = searched.iter().enumerate().map(|(j, &parameter)| {
                 let [low, high] = [&pairs[2 * j], &pairs[2 * j + 1]].map(|trial| &trial.evaluated);
                 let width = high.point[parameter] - low.point[parameter];
                 let runs = high.samples[target]
@@ -284,7 +284,7 @@ impl Stages<'_> {
                     both.map(|(&high, &low)| (ratio(high, of) - ratio(low, of)) / width);
                 MeanStd::of(&differences.collect::<Vec<f64>>())
             });
-            let differences: Vec<Option<MeanStd>> = differences.collect();
+            let differences: Vec<Option<MeanStd>> = changes.collect();
             let noise = noise(&best.evaluated.samples[target], of).unwrap_or_default();
             let scale = (unexplained * (1.0 + noise * noise)).sqrt();
             slopes(&differences, scale)

@@ -91,8 +91,7 @@ impl Calibration {
             None => Ok(other.to_vec()),
         };
         let own = seeds(keys.seeds.as_ref(), &[1])?;
-        let final_seeds = seeds(keys.final_seeds.as_ref(), &own);
-        let final_seeds = final_seeds.map_err(|problem| Problem {
+        let final_seeds = seeds(keys.final_seeds.as_ref(), &own).map_err(|problem| Problem {
             path: format!("final_{}", problem.path),
             ..problem
         })?;
@@ -148,8 +147,8 @@ impl Calibration {
         for (k, parameter) in self.parameters.iter().enumerate() {
             let mut is_used = false;
             for (number, scene) in self.scenes.iter().enumerate() {
-                let settings = parameter.settings(parameter.start, &scene.document);
-                let settings = settings.map_err(|error| refused(k, scene, error.to_string()))?;
+                let made = parameter.settings(parameter.start, &scene.document);
+                let settings = made.map_err(|error| refused(k, scene, error.to_string()))?;
                 is_used |= !settings.is_empty() && fitted.contains(&number);
                 let alone = scene.case.with(settings, memory);
                 alone.map_err(|error| refused(k, scene, error.to_string()))?;
@@ -178,10 +177,10 @@ impl Calibration {
     /// The settings that set all parameters of a scene to these values.
     pub(super) fn settings(&self, scene: &Scene, values: &[f64]) -> Result<Vec<Setting>, String> {
         let parameters = self.parameters.iter().zip(values);
-        let settings =
+        let by_parameter =
             parameters.map(|(parameter, &value)| parameter.settings(value, &scene.document));
-        let settings: Result<Vec<_>, _> = settings.collect();
-        let settings = settings.map_err(|error| error.to_string())?;
+        let collected: Result<Vec<_>, _> = by_parameter.collect();
+        let settings = collected.map_err(|error| error.to_string())?;
         Ok(settings.into_iter().flatten().collect())
     }
 

@@ -120,8 +120,8 @@ impl Report<'_> {
     fn correlated(&self) -> Vec<(String, f64)> {
         let searched = &self.found.searched;
         let name = |k: usize| &self.calibration.parameters[searched[k]].name;
-        let pairs = (0..searched.len()).flat_map(|a| (0..a).map(move |b| (b, a)));
-        let pairs = pairs.map(|(a, b)| {
+        let numbers = (0..searched.len()).flat_map(|a| (0..a).map(move |b| (b, a)));
+        let pairs = numbers.map(|(a, b)| {
             let correlation = self.found.knowledge.correlation(a, b);
             (format!("{} and {}", name(a), name(b)), correlation)
         });
@@ -178,11 +178,11 @@ fn value_table(values: &[ValueResult]) -> Table {
 
 /// The reasons of failed runs at the best point.
 fn failed(values: &[ValueResult]) -> Vec<String> {
-    let lines = values.iter().flat_map(|value| {
+    let said = values.iter().flat_map(|value| {
         let reasons = value.best.failures.iter();
         reasons.map(move |why| format!("{}: {why}", value.of))
     });
-    let mut lines: Vec<String> = lines.collect();
+    let mut lines: Vec<String> = said.collect();
     lines.dedup();
     lines
 }

@@ -28,8 +28,8 @@ pub fn parts(
     let around = Surroundings::new(&site.walls, positions, masses, h, |p, near| {
         site.hidden(p, near, kernel)
     });
-    let sums = around.from_people(behind == Behind::Same);
-    let sums = sums.into_iter().enumerate();
+    let by_kind = around.from_people(behind == Behind::Same);
+    let sums = by_kind.into_iter().enumerate();
     sums.map(|(person, from_people)| Parts {
         from_people,
         hidden: around.hidden(person),
@@ -83,8 +83,8 @@ impl History {
         } else {
             let kept = &mut self.kept[person.number as usize];
             // A person who was absent one frame earlier is new, as in the engine.
-            let before = kept.filter(|&(last, _)| last == frame - step);
-            let before = before.map(|(_, mean)| mean);
+            let adjacent = kept.filter(|&(last, _)| last == frame - step);
+            let before = adjacent.map(|(_, mean)| mean);
             let sph = &self.sph;
             let [from_walls, mean] = sph.from_walls_and_mean(from_people, hidden, before, interval);
             *kept = Some((frame, mean));

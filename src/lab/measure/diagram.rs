@@ -204,9 +204,9 @@ impl Diagram {
         for frame in &self.frames {
             if let Some(density) = frame.density(kind) {
                 means.density.add(density);
-                let flow = frame.flow(kind);
+                let known = frame.flow(kind);
                 // People whose speeds are unknown have an unknown flow; where there are none, the flow is 0.
-                let flow = flow.or((frame.people == 0).then_some(0.0));
+                let flow = known.or((frame.people == 0).then_some(0.0));
                 flow.into_iter().for_each(|flow| means.flow.add(flow));
             }
             if let Some(speed) = frame.speed(kind) {

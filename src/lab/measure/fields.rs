@@ -98,8 +98,7 @@ impl Fields {
 
     /// The means over `frames` frames, cell by cell; `None` inside obstacles.
     pub fn means(&self, frames: u64) -> impl Iterator<Item = Option<Mean>> + '_ {
-        let places = self.sums.iter().zip(&self.views);
-        places.map(move |(sums, view)| {
+        self.sums.iter().zip(&self.views).map(move |(sums, view)| {
             let seen = view.as_ref()?.visible();
             let is_known = sums.moving > 0.0;
             Some(Mean {

@@ -126,8 +126,8 @@ impl Crossings {
         let times: Vec<f64> = self.passages(direction).collect();
         let (first, last) = (times.first(), times.last());
         let span = first.zip(last).map(|(first, last)| last - first);
-        let flow = span.filter(|&span| span > 0.0);
-        let flow = flow.map(|span| (times.len() - 1) as f64 / span);
+        let lasting = span.filter(|&span| span > 0.0);
+        let flow = lasting.map(|span| (times.len() - 1) as f64 / span);
         Way {
             passages: times.len(),
             crossings: all.count(),

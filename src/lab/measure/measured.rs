@@ -80,42 +80,28 @@ pub fn measure<E: From<MeasureError>>(
     mut take: impl FnMut(&[Moment]) -> Result<(), E>,
 ) -> Result<Measured, E> {
     let chosen = chosen(tracks, options)?;
-    let velocities = speed::velocities(tracks, options.speed_reach);
     let mut fields = Fields::new(grid(tracks, options, chosen.clone())?, site, options.kernel);
-    let places = Regions::new(site, options)?;
-    let mut diagrams = diagrams(options, &places);
+    let rows = Rows {
+        tracks,
+        site,
+        options,
+        places: Regions::new(site, options)?,
+        velocities: speed::velocities(tracks, options.speed_reach),
+    };
+    let mut diagrams = diagrams(options, &rows.places);
     let mut history = History::new(options, tracks.ids.len());
     let mut overview = overview(tracks, chosen.clone());
     let mut seen = vec![false; tracks.ids.len()];
     let first = tracks.frames[chosen.start];
     let mut safety = Safety::new(tracks, first, options.sample_every);
     for batch in batches(tracks, chosen) {
-        let found = batch.clone().into_par_iter().map(|k| {
-            let rows = tracks.rows(k);
-            let masses = tracks.mass.get(rows.clone()).unwrap_or(&[]);
-            let how = (&options.kernel, options.behind);
-            let parts = parts(site, &tracks.position[rows.clone()], masses, how);
-            let people = rows.zip(&parts);
-            let people = people.map(|(row, parts)| person(tracks, row, parts, velocities[row]));
-            let mut people: Vec<Person> = people.collect();
-            let regions = places.measure(&mut people);
-            (parts, people, regions)
-        });
-        let found: Vec<(Vec<Parts>, Vec<Person>, Vec<RegionState>)> = found.collect();
-        let moments = batch.zip(found).map(|(k, (parts, mut people, regions))| {
-            overview.look_at(&parts);
-            let frame = tracks.frames[k];
-            for (person, parts) in people.iter_mut().zip(&parts) {
-                history.complete(person, parts, (frame, tracks.step, tracks.interval()));
-            }
-            Moment {
-                frame,
-                time: tracks.time(frame),
-                people,
-                regions,
-            }
-        });
-        let moments: Vec<Moment> = moments.collect();
+        let frames = batch.clone().into_par_iter();
+        let found: Vec<Found> = frames.map(|k| rows.of_frame(k)).collect();
+        let moment = |(k, found): (usize, Found)| {
+            overview.look_at(&found.parts);
+            found.completed(&mut history, tracks, tracks.frames[k])
+        };
+        let moments: Vec<Moment> = batch.zip(found).map(moment).collect();
         for moment in &moments {
             overview.add(moment);
             for person in &moment.people {
@@ -141,6 +127,58 @@ pub fn measure<E: From<MeasureError>>(
         departures: safety.departures(tracks),
         safety,
     })
+}
+
+/// What each row is measured from.
+struct Rows<'a> {
+    tracks: &'a Tracks,
+    site: &'a Site,
+    options: &'a Options,
+    places: Regions<'a>,
+    /// By row.
+    velocities: Vec<Option<Vector>>,
+}
+
+impl Rows<'_> {
+    fn of_frame(&self, k: usize) -> Found {
+        let Self {
+            tracks, options, ..
+        } = self;
+        let rows = tracks.rows(k);
+        let masses = tracks.mass.get(rows.clone()).unwrap_or(&[]);
+        let how = (&options.kernel, options.behind);
+        let parts = parts(self.site, &tracks.position[rows.clone()], masses, how);
+        let person = |(row, parts)| person(tracks, row, parts, self.velocities[row]);
+        let mut people: Vec<Person> = rows.zip(&parts).map(person).collect();
+        let regions = self.places.measure(&mut people);
+        Found {
+            parts,
+            people,
+            regions,
+        }
+    }
+}
+
+/// A frame before the densities of its people are known.
+struct Found {
+    parts: Vec<Parts>,
+    people: Vec<Person>,
+    regions: Vec<RegionState>,
+}
+
+impl Found {
+    /// The frame with the number `frame`, with all densities.
+    fn completed(mut self, history: &mut History, tracks: &Tracks, frame: i64) -> Moment {
+        for (person, parts) in self.people.iter_mut().zip(&self.parts) {
+            history.complete(person, parts, (frame, tracks.step, tracks.interval()));
+        }
+        Moment {
+            frame,
+            time: tracks.time(frame),
+            people: self.people,
+            regions: self.regions,
+        }
+    }
 }
 
 /// Diagrams without frames: one per region, or one for everywhere.

@@ -52,11 +52,10 @@ impl Results {
     pub fn create(folder: &Path) -> Result<Self, StoreError> {
         fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
         let path = folder.join(AGENTS);
-        let begun = Replacement::begin(&path).map_err(|error| unwritten(&path, &error));
-        let (replacement, file) = begun?;
+        let opened = Replacement::begin(&path).map_err(|error| unwritten(&path, &error));
+        let (replacement, file) = opened?;
         let mut agents = BufWriter::new(file);
-        let begun = writeln!(agents, "{AGENT_COLUMNS}");
-        begun.map_err(|error| unwritten(&path, &error))?;
+        writeln!(agents, "{AGENT_COLUMNS}").map_err(|error| unwritten(&path, &error))?;
         Ok(Self {
             store: Store::at(folder),
             agents,
@@ -100,8 +99,7 @@ impl Results {
     /// # Errors
     /// The file cannot be written.
     pub fn finish(mut self) -> Result<(), StoreError> {
-        let flushed = self.agents.flush();
-        let kept = flushed.and_then(|()| self.replacement.keep());
+        let kept = self.agents.flush().and_then(|()| self.replacement.keep());
         kept.map_err(|error| unwritten(&self.store.path(AGENTS), &error))
     }
 }

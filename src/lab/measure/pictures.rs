@@ -63,8 +63,8 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
             values,
             map,
         };
-        let solid = means.iter().map(|mean| mean.is_none().then_some(0.0));
-        let solid = cells(solid.collect(), ColorMap::plain(GRAY));
+        let nowhere = means.iter().map(|mean| mean.is_none().then_some(0.0));
+        let solid = cells(nowhere.collect(), ColorMap::plain(GRAY));
         let field = Mark::Cells(cells(values.collect(), map.clone()));
         let mut marks = vec![Mark::Group(vec![field, Mark::Overlay(solid)])];
         marks.extend(walls.iter().map(|wall| {
@@ -88,18 +88,17 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
 
 /// The outlines of regions and the lines, with their numbers.
 fn places(measured: &Measured) -> Vec<Mark> {
-    let regions = measured.diagrams.iter().enumerate();
-    let regions = regions.filter_map(|(k, diagram)| {
+    let diagrams = measured.diagrams.iter().enumerate();
+    let regions = diagrams.filter_map(|(k, diagram)| {
         let [a, b, c, d] = diagram.region?.corners();
         Some((vec![a, b, c, d, a], [0, 0], format!("region {}", k + 1)))
     });
-    let lines = measured.crossings.iter().enumerate();
-    let lines = lines.map(|(k, crossings)| {
+    let lines = measured.crossings.iter().enumerate().map(|(k, crossings)| {
         let ends = vec![crossings.line.start, crossings.line.end];
         (ends, [-1, 0], format!("line {}", k + 1))
     });
-    let marks = regions.chain(lines);
-    let marks = marks.flat_map(|(path, side, text): (Vec<Vector>, [i8; 2], String)| {
+    let places = regions.chain(lines);
+    let marks = places.flat_map(|(path, side, text): (Vec<Vector>, [i8; 2], String)| {
         let [low, high] = bounds(path.iter().copied()).unwrap_or_default();
         let middle = (low + high) / 2.0;
         let path: Vec<[f64; 2]> = path.iter().map(|p| [p.x, p.y]).collect();
@@ -144,13 +143,12 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
             .flat_map(of)
             .flat_map(|(_, classes)| classes.values())
     };
-    let right = classes().map(|class| class.density.mean);
-    let right = 1.3 * right.fold(0.5, f64::max); // room for the legend
+    let densities = classes().map(|class| class.density.mean);
+    let right = 1.3 * densities.fold(0.5, f64::max); // room for the legend
     let top = |of: &Quantity| {
         let highest = |mean: MeanStd| mean.mean + mean.population_std();
-        let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);
-        let frames =
-            frames.flat_map(|mean| kinds.iter().filter_map(|&kind| (of.frame)(mean, kind)));
+        let means = diagrams.iter().flat_map(|diagram| &diagram.frames);
+        let frames = means.flat_map(|mean| kinds.iter().filter_map(|&kind| (of.frame)(mean, kind)));
         let classes = classes().map(|class| highest((of.class)(class)));
         1.1 * classes.chain(frames).fold(0.1, f64::max)
     };
@@ -164,8 +162,8 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
             marks.push(Mark::dots(dots, style));
         }
         for (k, diagram) in diagrams.iter().enumerate() {
-            let classes = diagram.classes(kind).into_iter();
-            let classes = classes.flat_map(|(_, classes)| classes.values());
+            let known = diagram.classes(kind).into_iter();
+            let classes = known.flat_map(|(_, classes)| classes.values());
             let points = classes.map(|class| {
                 let value = (of.class)(class);
                 let (x, y, error) = (class.density.mean, value.mean, value.population_std());
@@ -184,8 +182,8 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
         Panel::new(&title, x, y, marks).with_legend(Corner::UpperRight)
     };
     let (kinds, panel) = (&kinds, &panel);
-    let panels = QUANTITIES.iter();
-    let panels = panels.flat_map(|of| kinds.iter().map(move |&kind| panel(kind, of)));
+    let quantities = QUANTITIES.iter();
+    let panels = quantities.flat_map(|of| kinds.iter().map(move |&kind| panel(kind, of)));
     Sheet::new("", kinds.len().max(1), [210.0, 180.0], panels.collect())
 }
 
@@ -201,8 +199,8 @@ fn name(diagram: &Diagram, k: usize) -> String {
 fn counts(crossings: &[Crossings]) -> Sheet {
     let all = || crossings.iter().flat_map(|line| &line.list);
     let last = all().map(|c| c.time).fold(0.0, f64::max);
-    let first = all().map(|c| c.time).fold(f64::INFINITY, f64::min);
-    let first = if first < last { first } else { last - 1.0 };
+    let start = all().map(|c| c.time).fold(f64::INFINITY, f64::min);
+    let first = if start < last { start } else { last - 1.0 };
     let mut marks = Vec::new();
     let mut most: f64 = 1.0;
     for (k, line) in crossings.iter().enumerate() {
@@ -211,8 +209,8 @@ fn counts(crossings: &[Crossings]) -> Sheet {
             [(1, "forward", Style::full), (-1, "backward", Style::broken)];
         for (direction, name, style) in styles {
             let times = line.passages(direction).enumerate();
-            let steps = times.flat_map(|(n, time)| [[time, n as f64], [time, (n + 1) as f64]]);
-            let steps: Vec<[f64; 2]> = steps.collect();
+            let corners = times.flat_map(|(n, time)| [[time, n as f64], [time, (n + 1) as f64]]);
+            let steps: Vec<[f64; 2]> = corners.collect();
             if let Some([_, count]) = steps.last() {
                 most = most.max(*count);
                 let label = format!("line {} {name}", k + 1);
@@ -243,8 +241,8 @@ fn over_time(
     let values = curves.iter().flat_map(|(points, _)| points).map(|at| at[1]);
     let top = 1.35 * values.fold(least, f64::max); // room for the legend
     let time = Axis::linear("t [s]", [first, last.max(first + 1.0)]);
-    let marks = curves.into_iter();
-    let marks = marks.map(|(points, style)| Mark::Line(points, style));
+    let lines = curves.into_iter();
+    let marks = lines.map(|(points, style)| Mark::Line(points, style));
     let value = Axis::linear(label, [0.0, top]);
     Panel::new(title, time, value, marks.collect()).with_legend(Corner::UpperRight)
 }
@@ -252,11 +250,11 @@ fn over_time(
 /// The densities and speeds of each region over time, side by side; `None` without regions.
 fn regions(measured: &Measured) -> Option<Sheet> {
     type ByDensity = fn(&FrameMean, Density) -> Option<f64>;
-    let regions = measured.diagrams.iter().zip(1..);
-    let regions = regions.filter(|(diagram, _)| diagram.region.is_some());
-    let panels = regions.flat_map(|(diagram, number)| {
+    let numbered = measured.diagrams.iter().zip(1..);
+    let regions = numbered.filter(|(diagram, _)| diagram.region.is_some());
+    let pairs = regions.flat_map(|(diagram, number)| {
         let panel = |[what, label]: [&str; 2], kinds: &[Density], value: ByDensity| {
-            let curves = kinds.iter().map(|&kind| {
+            let named = kinds.iter().map(|&kind| {
                 let frames = thinned(&diagram.frames, MOST_POINTS);
                 let points = frames.filter_map(|frame| Some([frame.time, value(frame, kind)?]));
                 let name = match (kind, what) {
@@ -267,7 +265,7 @@ fn regions(measured: &Measured) -> Option<Sheet> {
                 (points.collect(), style)
             });
             let title = format!("region {number}: {what}");
-            let curves = curves.collect();
+            let curves = named.collect();
             over_time([&title, label], measured.overview.times, 0.1, curves)
         };
         let speeds = [Density::SphAtPeople, Density::Voronoi];
@@ -277,7 +275,7 @@ fn regions(measured: &Measured) -> Option<Sheet> {
             panel(["speed", "speed [m/s]"], &speeds, FrameMean::speed),
         ]
     });
-    let panels: Vec<Panel> = panels.collect();
+    let panels: Vec<Panel> = pairs.collect();
     (!panels.is_empty()).then(|| Sheet::new("", 2, [260.0, 190.0], panels))
 }
 
@@ -289,7 +287,7 @@ fn safety(safety: &Safety) -> Sheet {
         let point = |sample: &Sample| Some([sample.time, value(sample)?]);
         samples.iter().filter_map(point).collect()
     };
-    let areas = [
+    let above = [
         series(|sample| Some(sample.area_above_4)),
         series(|sample| Some(sample.area_above_5)),
         series(|sample| Some(sample.area_above_6)),
@@ -298,7 +296,7 @@ fn safety(safety: &Safety) -> Sheet {
         let label = format!("above {density} P/m²");
         Style::full(color, 1.2, &label)
     });
-    let areas = areas.into_iter().zip(styles).collect();
+    let areas = above.into_iter().zip(styles).collect();
     let label = format!("{BEFORE_ACCIDENT}: before the accident at Mina, 2006");
     let mark = ends.map(|time| [time, BEFORE_ACCIDENT]).to_vec();
     let highest = series(|sample| sample.pressure);

@@ -53,8 +53,8 @@ impl<'a> MomentRecorder<'a> {
     ) -> Result<Self, RecordingError> {
         let [low, high] = bounds(tracks.position.iter().copied()).unwrap_or_default();
         let margin = Vector::repeat(1.0);
-        let ends = [tracks.frames.first(), tracks.frames.last()];
-        let ends = ends.map(|frame| frame.map_or(0.0, |&frame| tracks.time(frame)));
+        let frames = [tracks.frames.first(), tracks.frames.last()];
+        let ends = frames.map(|frame| frame.map_or(0.0, |&frame| tracks.time(frame)));
         let origin = origin([low, high]);
         let title = folder.file_name().unwrap_or_default().to_string_lossy();
         let document = document(tracks, measured) + &on_origin(origin);

@@ -103,8 +103,8 @@ impl Walkable {
                 *moved.get_or_insert(0.0) += inside * velocity.norm();
             }
         }
-        let inside = people.iter();
-        let inside = inside.filter(|person| self.region.contains(person.position));
+        let all = people.iter();
+        let inside = all.filter(|person| self.region.contains(person.position));
         RegionState {
             sph_field: self.field.mean(site, people),
             classic: inside.count() as f64 / self.walkable,

@@ -77,8 +77,8 @@ pub fn json(measured: &Measured) -> Vec<Value> {
     let rows = region_means(measured);
     let regions = rows.chunk_by(|a, b| a.number == b.number);
     let region = |rows: &[RegionMeans]| {
-        let means = rows.iter();
-        let means = means.map(|row| (row.kind.key().to_owned(), of_class(&row.means)));
+        let classes = rows.iter();
+        let means = classes.map(|row| (row.kind.key().to_owned(), of_class(&row.means)));
         json!({
             "region": corners(&rows[0].region),
             "walkable_m2": rows[0].diagram.walkable,

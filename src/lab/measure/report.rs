@@ -47,11 +47,11 @@ impl Report<'_> {
         }
         blocks.extend(regions_report::block(self.measured));
         for (k, diagram) in self.measured.diagrams.iter().enumerate() {
-            let place = diagram.region.map(|region| {
+            let named = diagram.region.map(|region| {
                 let [min, max] = [region.min, region.max].map(|p| format!("({}, {})", p.x, p.y));
                 format!("region {}: {min} to {max} m", k + 1)
             });
-            let place = place.unwrap_or_else(|| "everywhere".to_owned());
+            let place = named.unwrap_or_else(|| "everywhere".to_owned());
             let caption = format!("Fundamental diagram, {place}: speeds by density.");
             blocks.push(Block::Table(classes(diagram), caption));
         }
@@ -122,8 +122,8 @@ impl Report<'_> {
     pub fn json(&self) -> Value {
         let overview = &self.measured.overview;
         let (kernel, cells) = (self.options.kernel, self.options.cells);
-        let lines = self.measured.crossings.iter();
-        let lines = lines.map(|crossings| line(crossings, self.options.flow_of));
+        let crossings = self.measured.crossings.iter();
+        let lines = crossings.map(|crossings| line(crossings, self.options.flow_of));
         json!({
             "people": overview.people,
             "rows": overview.rows,
@@ -161,12 +161,10 @@ impl Report<'_> {
 
 /// Two rows per line: forward and backward.
 fn flows(crossings: &[Crossings], flow_of: Passages) -> Table {
-    let lines = crossings.iter().zip(1_usize..);
-    let ways = lines.flat_map(|(line, number)| {
-        let directions = [(1, "forward"), (-1, "backward")];
-        directions.map(|(way, name)| (number, name, line.way(way, flow_of)))
+    let directed = crossings.iter().zip(1_usize..).flat_map(|(line, number)| {
+        [(1, "forward"), (-1, "backward")].map(|(way, name)| (number, name, line.way(way, flow_of)))
     });
-    let ways: Vec<(usize, &str, Way)> = ways.collect();
+    let ways: Vec<(usize, &str, Way)> = directed.collect();
     let passages = |way: &Way| {
         let between = way.part.map(|part| part.passages);
         between.map_or("–".to_owned(), |[n, m]| format!("{n}–{m}"))
@@ -189,29 +187,27 @@ fn flows(crossings: &[Crossings], flow_of: Passages) -> Table {
 
 /// One row per density class, and for each density the number of values and their speeds.
 fn classes(diagram: &Diagram) -> Table {
-    let known = Density::ALL.into_iter();
-    let known = known.filter_map(|kind| Some((kind, diagram.classes(kind)?)));
-    let known: Vec<(Density, (&str, &Classes))> = known.collect();
+    let kinds = Density::ALL.into_iter();
+    let found = kinds.filter_map(|kind| Some((kind, diagram.classes(kind)?)));
+    let known: Vec<(Density, (&str, &Classes))> = found.collect();
     let numbers = known.iter().flat_map(|(_, (_, classes))| classes.keys());
     let rows: Vec<usize> = numbers
         .copied()
         .collect::<BTreeSet<_>>()
         .into_iter()
         .collect();
-    let columns = Table::of(&rows).column("density [P/m²]", |&k| {
+    let begun = Table::of(&rows).column("density [P/m²]", |&k| {
         let from = k as f64 * CLASS;
         format!("{from:.1}–{:.1}", from + CLASS)
     });
-    let columns = known
-        .iter()
-        .fold(columns, |columns, (kind, (of, classes))| {
-            let count = format!("{} [{of}]", kind.name());
-            columns
-                .column(&count, |k| {
-                    classes.get(k).map_or(0, |class| class.density.count)
-                })
-                .fixed("speed [m/s]", 3, |k| spread(classes.get(k)?.speed))
-        });
+    let columns = known.iter().fold(begun, |columns, (kind, (of, classes))| {
+        let count = format!("{} [{of}]", kind.name());
+        columns
+            .column(&count, |k| {
+                classes.get(k).map_or(0, |class| class.density.count)
+            })
+            .fixed("speed [m/s]", 3, |k| spread(classes.get(k)?.speed))
+    });
     columns.table()
 }
 

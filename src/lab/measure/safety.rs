@@ -98,8 +98,7 @@ impl Safety {
         }
         let is_due = |moment: &&Moment| (moment.frame - self.first).rem_euclid(self.every) == 0;
         let due: Vec<&Moment> = moments.iter().filter(is_due).collect();
-        let local = due.par_iter().map(|moment| local(moment, site));
-        let local: Vec<Vec<Local>> = local.collect();
+        let local: Vec<Vec<Local>> = due.par_iter().map(|moment| local(moment, site)).collect();
         for (moment, people) in due.into_iter().zip(&local) {
             let last = self.samples.last().map(|last| last.frame);
             if last.is_some_and(|last| moment.frame - last > self.every) {
@@ -149,8 +148,8 @@ impl Safety {
 
 /// The people of a frame with their surroundings.
 fn local(moment: &Moment, site: &Site) -> Vec<Local> {
-    let people = moment.people.iter();
-    let people = people.map(|person| (person.number, person.position, person.velocity));
-    let people = People::new(people);
+    let all = moment.people.iter();
+    let moving = all.map(|person| (person.number, person.position, person.velocity));
+    let people = People::new(moving);
     people.local(&people.at(site), true)
 }

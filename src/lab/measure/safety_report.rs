@@ -78,8 +78,8 @@ fn left(departures: &Departures) -> String {
 /// One row per density, and one for standing.
 fn exposure(safety: &Safety) -> Table {
     let alarms = safety.exposure.alarms.map(Some).into_iter().chain([None]);
-    let names = DENSITIES.map(|density| format!("above {density} P/m²"));
-    let names = names.into_iter().chain([format!("below {SLOW} m/s")]);
+    let above = DENSITIES.map(|density| format!("above {density} P/m²"));
+    let names = above.into_iter().chain([format!("below {SLOW} m/s")]);
     let exposed = safety.exposure.exposed(safety.secs);
     let rows: Vec<(String, Exposed, Option<Alarm>)> = names
         .zip(exposed)
@@ -121,8 +121,8 @@ pub fn json(measured: &Measured) -> Value {
     let safety = &measured.safety;
     let secs = safety.secs;
     let exposed = safety.exposure.exposed(secs);
-    let dense = exposed.iter().zip(&safety.exposure.alarms);
-    let dense = dense.zip(DENSITIES).map(|((exposed, alarm), density)| {
+    let pairs = exposed.iter().zip(&safety.exposure.alarms);
+    let dense = pairs.zip(DENSITIES).map(|((exposed, alarm), density)| {
         json!({
             "above_per_m2": density,
             "exposed": exposed,

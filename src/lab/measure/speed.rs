@@ -13,10 +13,10 @@ pub const FRAMES: i64 = 5;
 /// if the person is absent in between: no motion is measured across gaps.
 pub fn velocities(tracks: &Tracks, reach: i64) -> Vec<Option<Vector>> {
     let frames = reach.saturating_mul(tracks.step);
-    let of_people = (0..tracks.ids.len()).into_par_iter().map(|p| {
+    let computed = (0..tracks.ids.len()).into_par_iter().map(|p| {
         let rows = tracks.rows_of(p).iter().map(|&row| row as usize);
-        let states = rows.map(|row| (tracks.frame_of(row), tracks.position[row]));
-        let states: Vec<(i64, Vector)> = states.collect();
+        let timed = rows.map(|row| (tracks.frame_of(row), tracks.position[row]));
+        let states: Vec<(i64, Vector)> = timed.collect();
         // The state is as many rows away as frames: no frame is missing in between.
         let at = |k: Option<usize>, frame| states.get(k?).filter(|state| state.0 == frame);
         let velocity = |(k, here): (usize, &(i64, Vector))| {
@@ -28,7 +28,7 @@ pub fn velocities(tracks: &Tracks, reach: i64) -> Vec<Option<Vector>> {
         };
         states.iter().enumerate().map(velocity).collect()
     });
-    let of_people: Vec<Vec<Option<Vector>>> = of_people.collect();
+    let of_people: Vec<Vec<Option<Vector>>> = computed.collect();
     let mut velocities = vec![None; tracks.len()];
     for (p, own) in of_people.into_iter().enumerate() {
         for (&row, velocity) in tracks.rows_of(p).iter().zip(own) {

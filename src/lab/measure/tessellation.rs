@@ -95,8 +95,8 @@ impl<'a> Tessellation<'a> {
     /// # Errors
     /// Those of [`floor_plan::free`].
     pub fn walkable(&self, region: &Region) -> Result<f64, MeasureError> {
-        let parts = self.parts(&region.corners());
-        let parts = parts.map_err(|error| MeasureError::Floor(error.to_string()))?;
+        let cut = self.parts(&region.corners());
+        let parts = cut.map_err(|error| MeasureError::Floor(error.to_string()))?;
         Ok(parts.iter().map(Area::area).sum())
     }
 

@@ -3,7 +3,9 @@
 use output::document::Block;
 use output::table::Table;
 use runs::summary::Summary;
-use scenario::measurements::{GAP, HEADWAY, Measurement, Quantity, SLOW, STUCK_AFTER};
+use scenario::measurements::{
+    GAP, HEADWAY, HighestDensity, LongestQueue, Measurement, Quantity, SLOW, STUCK_AFTER,
+};
 
 /// What readers of all values must know.
 pub const DENSITY: &str = "\
@@ -95,62 +97,70 @@ pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
     )];
     for one in &NUMBERS {
         facts.push(number(one));
-        if let (Some(highest), true) = (run.highest_density, one.0 == HIGHEST) {
-            let ([x, y], secs) = (highest.at, highest.at_secs);
-            facts.push(Fact::new(
-                "its place and time",
-                format!("({x:.2}, {y:.2}) m, {secs:.2} s"),
-                format!(
-                    "place of the agent with the highest density, and when it had it first{}",
-                    highest
-                        .of_large()
-                        .map_or(String::new(), |large| format!("; {large}"))
-                ),
-            ));
+        if one.0 == HIGHEST {
+            facts.extend(run.highest_density.as_ref().map(place_of_highest));
         }
     }
-    for (k, queue) in run.longest_queues.iter().enumerate() {
-        let before = &queue.before;
-        facts.push(Fact::new(
-            &format!("longest queue before {before}"),
-            format!("{} people at {:.0} s", queue.agents, queue.at_secs),
-            match k {
-                0 => format!(
-                    "most people at one time whose way leads there and who are slower than {SLOW} of their preferred \
-                     speed, from there up to the first gap of {GAP} m along their ways, without those who have just \
-                     started; of a queue with a line, those who have joined it"
-                ),
-                _ => "the same".to_owned(),
-            },
-        ));
-        if let Some(outside) = &queue.outside {
-            facts.push(Fact::new(
-                &format!("outside of the line of {before}"),
-                format!("{} people at {:.0} s", outside.agents, outside.at_secs),
-                format!(
-                    "most people at one time around its line when it was full; {} stood there, {:.0} s each on average",
-                    outside.people, outside.mean_secs
-                ),
-            ));
-        }
-        if let Some(density) = queue.density_per_m2 {
-            let packed = queue
-                .packed()
-                .map_or(String::new(), |packed| format!("; {packed}"));
-            let whose = match queue.outside {
-                Some(_) => " who stand outside of the line",
-                None => "",
-            };
-            facts.push(Fact::new(
-                &format!("density of those who wait before {before}"),
-                format!("{density:.1} P/m²"),
-                format!(
-                    "the highest median of the SPH densities at five or more of them{whose}{packed}"
-                ),
-            ));
-        }
-    }
+    let queues = run.longest_queues.iter().enumerate();
+    facts.extend(queues.flat_map(|(k, queue)| of_queue(queue, k == 0)));
     facts
+}
+
+fn place_of_highest(highest: &HighestDensity) -> Fact {
+    let ([x, y], secs) = (highest.at, highest.at_secs);
+    let large = highest
+        .of_large()
+        .map_or(String::new(), |large| format!("; {large}"));
+    Fact::new(
+        "its place and time",
+        format!("({x:.2}, {y:.2}) m, {secs:.2} s"),
+        format!("place of the agent with the highest density, and when it had it first{large}"),
+    )
+}
+
+/// The facts about a queue; those of the first have their definitions.
+fn of_queue(queue: &LongestQueue, is_first: bool) -> impl Iterator<Item = Fact> {
+    let before = &queue.before;
+    let meaning = match is_first {
+        true => format!(
+            "most people at one time whose way leads there and who are slower than {SLOW} of their preferred speed, \
+             from there up to the first gap of {GAP} m along their ways, without those who have just started; of a \
+             queue with a line, those who have joined it"
+        ),
+        false => "the same".to_owned(),
+    };
+    let most = Fact::new(
+        &format!("longest queue before {before}"),
+        format!("{} people at {:.0} s", queue.agents, queue.at_secs),
+        meaning,
+    );
+    let outside = queue.outside.as_ref().map(|outside| {
+        Fact::new(
+            &format!("outside of the line of {before}"),
+            format!("{} people at {:.0} s", outside.agents, outside.at_secs),
+            format!(
+                "most people at one time around its line when it was full; {} stood there, {:.0} s each on average",
+                outside.people, outside.mean_secs
+            ),
+        )
+    });
+    let density = queue.density_per_m2.map(|density| {
+        let packed = queue
+            .packed()
+            .map_or(String::new(), |packed| format!("; {packed}"));
+        let whose = match queue.outside {
+            Some(_) => " who stand outside of the line",
+            None => "",
+        };
+        Fact::new(
+            &format!("density of those who wait before {before}"),
+            format!("{density:.1} P/m²"),
+            format!(
+                "the highest median of the SPH densities at five or more of them{whose}{packed}"
+            ),
+        )
+    });
+    [Some(most), outside, density].into_iter().flatten()
 }
 
 /// Who is stuck, by the likely cause.
@@ -179,8 +189,8 @@ pub fn stuck(run: &Summary) -> Vec<Block> {
 /// The values of a measurement in words, with their definitions.
 pub fn measured(measurement: &Measurement, run: &Summary) -> Vec<Fact> {
     let fact = |quantity: Quantity| {
-        let value = run.metrics.get(&quantity.name);
-        let value = match value {
+        let known = run.metrics.get(&quantity.name);
+        let value = match known {
             Some(value) if value.is_u64() => value.to_string(),
             Some(value) => value
                 .as_f64()

@@ -67,7 +67,7 @@ impl HeldOut {
                 "held out: {share} of {all} values of {runs} runs are within their tolerances (counted on {commit})."
             ));
         }
-        let kinds = self.kinds.iter().map(|kind| {
+        let said = self.kinds.iter().map(|kind| {
             let [inside, all] = kind.values;
             let note = match kind.note.as_str() {
                 "" => String::new(),
@@ -75,7 +75,7 @@ impl HeldOut {
             };
             format!("{} {inside} of {all}{note}", kind.name)
         });
-        let kinds: Vec<String> = kinds.collect();
+        let kinds: Vec<String> = said.collect();
         (profile == self.profile).then(|| {
             format!(
                 "held out: {inside} of {all} values of {runs} runs are within their tolerances. {}. They were counted \

@@ -61,8 +61,8 @@ impl Passages {
         let row = |(k, place): (usize, &Place)| {
             let (people, times) = self.passed.get(k).copied().unwrap_or_default();
             let width = free_width(scene, place.line()?);
-            let lasts = times.map(|[first, last]| last - first);
-            let lasts = lasts.filter(|&lasts| people > 1 && lasts > 0.0 && width > 0.0);
+            let between = times.map(|[first, last]| last - first);
+            let lasts = between.filter(|&lasts| people > 1 && lasts > 0.0 && width > 0.0);
             Some(Row {
                 name: shown(&place.name),
                 kind: place.kind.name(),
@@ -78,15 +78,15 @@ impl Passages {
             })
         };
         let rows: Vec<Row> = places.filter_map(row).collect();
-        let mut table = Table::of(&rows)
+        let mut begun = Table::of(&rows)
             .column("place", |row| row.name.as_str())
             .column("kind", |row| row.kind)
             .fixed("free width [m]", 2, |row| row.width)
             .column("open [s]", |row| row.open.as_str());
         if rows.iter().any(|row| row.most.is_some()) {
-            table = table.column("at most [P/s]", |row| row.most);
+            begun = begun.column("at most [P/s]", |row| row.most);
         }
-        let table = table
+        let table = begun
             .column("people", |row| row.people)
             .fixed("first [s]", 1, |row| row.times.map(|[first, _]| first))
             .fixed("last [s]", 1, |row| row.times.map(|[_, last]| last))
@@ -130,8 +130,8 @@ fn open(scene: &Scene, k: usize, kind: &Kind) -> String {
     if !matches!(kind, Kind::Exit(_) | Kind::Door(_)) {
         return "always".to_owned();
     }
-    let changes = scene.journeys.changes.iter();
-    let changes = changes.filter(|change| usize::from(change.place) == k);
+    let all = scene.journeys.changes.iter();
+    let changes = all.filter(|change| usize::from(change.place) == k);
     let mut spans: Vec<[Option<f64>; 2]> = vec![[Some(0.0), None]];
     for change in changes {
         match (change.kind, spans.last_mut()) {

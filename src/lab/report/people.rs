@@ -35,7 +35,7 @@ pub fn table(scenario: &Scenario, passages: &Passages) -> Block {
     let items = items(&scenario.document);
     let mut next = items.iter();
     let groups = scene.groups.iter().enumerate();
-    let rows = groups.map(|(k, group)| {
+    let found = groups.map(|(k, group)| {
         let own = match next.clone().position(|(name, _)| *name == group.name) {
             Some(skipped) => next.nth(skipped).map(|(_, item)| *item),
             None => None,
@@ -62,8 +62,8 @@ pub fn table(scenario: &Scenario, passages: &Passages) -> Block {
             goal: goal(scene, group),
         }
     });
-    let rows: Vec<Row> = rows.collect();
-    let mut table = Table::of(&rows)
+    let rows: Vec<Row> = found.collect();
+    let mut begun = Table::of(&rows)
         .column("people", |row| row.name.as_str())
         .column("at the start", |row| row.start)
         .column("entered", |row| row.entered)
@@ -71,12 +71,12 @@ pub fn table(scenario: &Scenario, passages: &Passages) -> Block {
         .column("premovement [s]", |row| row.premovement.as_str())
         .column("motivation", |row| row.group.motivation);
     if rows.iter().any(|row| row.radius.is_some()) {
-        table = table.column("radius [m]", |row| row.radius.as_deref());
+        begun = begun.column("radius [m]", |row| row.radius.as_deref());
     }
     if rows.iter().any(|row| row.mass.is_some()) {
-        table = table.column("mass [1]", |row| row.mass.as_deref());
+        begun = begun.column("mass [1]", |row| row.mass.as_deref());
     }
-    let table = table
+    let table = begun
         .column("journey or goal", |row| row.goal.as_str())
         .table();
     let caption = "Walking speeds and times before people walk (premovement) as the scenario gives them: a number, or \
@@ -89,8 +89,8 @@ pub fn table(scenario: &Scenario, passages: &Passages) -> Block {
 fn items(document: &Value) -> Vec<(String, &Value)> {
     let of = |list: &&'static str| {
         let list = *list;
-        let items = document.get(list).and_then(Value::as_array);
-        let items = items.into_iter().flatten().enumerate();
+        let listed = document.get(list).and_then(Value::as_array);
+        let items = listed.into_iter().flatten().enumerate();
         items.map(move |(k, item)| {
             let name = item.get("name").and_then(Value::as_str);
             let place = || format!("{list}[{k}]");
@@ -107,11 +107,11 @@ fn own_values(
     value: impl Fn(&engine::agents::NewAgent) -> Option<f64>,
     default: f64,
 ) -> String {
-    let own = scene
+    let agents = scene
         .agents
         .iter()
         .filter(|one| usize::from(one.group) == k);
-    let own: Vec<f64> = own.map(|one| value(one).unwrap_or(default)).collect();
+    let own: Vec<f64> = agents.map(|one| value(one).unwrap_or(default)).collect();
     let least = own.iter().copied().fold(f64::INFINITY, f64::min);
     let most = own.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     match least < most {
@@ -124,8 +124,8 @@ fn own_values(
 /// How long people stay at a waiting area or a queue, as the scenario gives it, and for how many there is room.
 pub fn held(scenario: &Scenario, place: &Place) -> String {
     let given = |list: &str, key: &str| {
-        let items = scenario.document.get(list).and_then(Value::as_array);
-        let mut items = items.into_iter().flatten();
+        let listed = scenario.document.get(list).and_then(Value::as_array);
+        let mut items = listed.into_iter().flatten();
         let own = items.find(|item| item["name"] == place.name.as_str());
         own.and_then(|item| item.get(key)).map(words)
     };
@@ -171,10 +171,10 @@ fn words(given: &Value) -> String {
             let parts = entries.iter().map(|(key, value)| match value {
                 Value::Object(inner) => {
                     let rank = |key: &str| FIRST.iter().position(|first| *first == key);
-                    let mut inner: Vec<(&String, &Value)> = inner.iter().collect();
-                    inner.sort_by_key(|(key, _)| rank(key).unwrap_or(FIRST.len()));
-                    let inner = inner.iter();
-                    let inner = inner.map(|(key, value)| format!("{key} {}", words(value)));
+                    let mut sorted: Vec<(&String, &Value)> = inner.iter().collect();
+                    sorted.sort_by_key(|(key, _)| rank(key).unwrap_or(FIRST.len()));
+                    let pairs = sorted.iter();
+                    let inner = pairs.map(|(key, value)| format!("{key} {}", words(value)));
                     format!("{key}: {}", inner.collect::<Vec<_>>().join(", "))
                 }
                 value => format!("{key} {}", words(value)),

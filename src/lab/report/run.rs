@@ -93,8 +93,8 @@ pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> Result<Document
 /// What the program said of the scenario and of the run; nothing if it said nothing.
 fn notes(run: &Run) -> Vec<Block> {
     let of_step = notes::of_step(&run.scenario.scene).into_iter();
-    let all = of_step.chain(run.scenario.notes.iter().cloned());
-    let all: Vec<String> = all.chain(notes::of(run)).collect();
+    let before = of_step.chain(run.scenario.notes.iter().cloned());
+    let all: Vec<String> = before.chain(notes::of(run)).collect();
     match all.is_empty() {
         true => Vec::new(),
         false => vec![Block::heading("Notes of the program"), Block::List(all)],
@@ -135,12 +135,12 @@ fn egress(simulation: &Simulation, summary: &Summary) -> Vec<Block> {
                  95 and 100 % of the agents that entered had left.";
     let table = "Shares are of the people who left. 50 %, 95 % and all of an exit are of the people who left there, of \
                  the last row of all who entered. Goals: people without an exit.";
-    let blocks = [
+    let first = [
         Block::heading("Egress"),
         Block::figure("", egress.sheet(""), curve),
         Block::Table(egress.table(), table.to_owned()),
     ];
-    let blocks = blocks.into_iter().chain(journeys(&summary.journeys));
+    let blocks = first.into_iter().chain(journeys(&summary.journeys));
     blocks.collect()
 }
 

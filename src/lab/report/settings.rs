@@ -25,11 +25,11 @@ struct Row {
 /// the values that are not those of the file.
 pub fn changed(scenario: &Scenario, by: &'static str) -> Block {
     let all = scenario.settings();
-    let preset = Preset::deserialize(&all["preset"]).unwrap_or_default();
-    let preset = preset.document();
+    let chosen = Preset::deserialize(&all["preset"]).unwrap_or_default();
+    let preset = chosen.document();
     let is_changed = |key: &str| {
-        let names = scenario.changes.iter();
-        let names = names.filter_map(|change| change.split(['=', ' ']).next());
+        let changes = scenario.changes.iter();
+        let names = changes.filter_map(|change| change.split(['=', ' ']).next());
         let mut keys = names.map(|name| {
             OPTIONS
                 .iter()
@@ -43,13 +43,13 @@ pub fn changed(scenario: &Scenario, by: &'static str) -> Block {
             let parameter = document.get("parameters").and_then(|all| all.get(doc.key));
             parameter.or_else(|| document.get(doc.key)).cloned()
         };
-        let value = given(&all)?;
+        let found = given(&all)?;
         let is_parameter = |key: &str| {
             let parameters = all.get("parameters");
             parameters.is_some_and(|all| all.get(key).is_some())
         };
-        let is_simple = !value.is_object() && !value.is_array() && !value.is_null();
-        let value = match value {
+        let is_simple = !found.is_object() && !found.is_array() && !found.is_null();
+        let value = match found {
             Value::String(text) => text,
             value => tidy(&value.to_string()),
         };
@@ -84,8 +84,8 @@ pub fn changed(scenario: &Scenario, by: &'static str) -> Block {
 
 /// Whether a scenario changes parameters of its profiles.
 pub fn changes_profile(scenario: &Scenario) -> bool {
-    let own = scenario.document.get("parameters");
-    let own = own.and_then(Value::as_object);
+    let parameters = scenario.document.get("parameters");
+    let own = parameters.and_then(Value::as_object);
     own.is_some_and(|own| !own.is_empty())
 }
 

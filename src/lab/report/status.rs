@@ -53,11 +53,11 @@ pub fn status(profiles: &[&str], is_changed: bool) -> Result<Vec<Block>, LabErro
         let name = shown(profile);
         let held_out = known.held_out.said_of(profile);
         items.extend(held_out.map(|said| format!("`{name}`, {said}")));
-        let said = match known.validated.profiles.get(*profile) {
+        let measured = match known.validated.profiles.get(*profile) {
             Some(one) => validated(one),
             None => unknown(profile).to_owned(),
         };
-        items.push(format!("`{name}`, `sandbox validate`: {said}."));
+        items.push(format!("`{name}`, `sandbox validate`: {measured}."));
         let said = match known.verified.profiles.get(*profile) {
             Some(one) => {
                 let missed = missed(&one.missed);

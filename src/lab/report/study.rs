@@ -47,17 +47,17 @@ pub fn of_study(gathered: &Gathered, file: &Path, folder: &Path) -> Result<Docum
         return Err(LabError::missing(&study.name, "finished run"));
     }
     let first = combinations.iter().filter_map(|one| one.cells.first());
-    let scenarios = first.map(|cell| {
+    let read = first.map(|cell| {
         let invalid = |error: scenario::ScenarioError| LabError::Data(error.to_string());
         cell.case.scenario().map_err(invalid)
     });
-    let scenarios: Vec<Scenario> = scenarios.collect::<Result<_, _>>()?;
+    let scenarios: Vec<Scenario> = read.collect::<Result<_, _>>()?;
     let names: Vec<String> = combinations
         .iter()
         .map(|one| name(one, &study.axes))
         .collect();
     let description = study.document["description"].as_str().unwrap_or_default();
-    let text = format!(
+    let about = format!(
         "{finished} of {} runs are finished: {} combination(s) of settings, each with up to {} seeds. Values are means \
          over the seeds ± half their 95 % confidence intervals (Student's t), then the least and the largest value. \
          [n of m]: the mean of the n runs that have a value; with the others it would be another one.",
@@ -65,20 +65,12 @@ pub fn of_study(gathered: &Gathered, file: &Path, folder: &Path) -> Result<Docum
         combinations.len(),
         study.seeds
     );
-    let mut blocks = vec![Block::heading("Results"), Block::text(text)];
-    let numbers = numbers(gathered, &scenarios);
-    for (part, names) in combinations.chunks(BESIDE).zip(names.chunks(BESIDE)) {
-        blocks.push(Block::Table(
-            side_by_side(&numbers, part, names),
-            String::new(),
-        ));
-    }
-    let definitions = Table::of(&numbers)
-        .column("result", |number| number.name.as_str())
-        .column("definition", |number| number.meaning.as_str())
-        .table();
-    blocks.push(Block::text("What the results mean:"));
-    blocks.push(Block::Table(definitions, facts::DENSITY.to_owned()));
+    let mut blocks = vec![Block::heading("Results"), Block::text(about)];
+    blocks.extend(results(
+        &numbers(gathered, &scenarios),
+        &combinations,
+        &names,
+    ));
     blocks.extend(figures(gathered, &combinations, &names));
     blocks.push(Block::heading("Scenario"));
     if let (Some(scenario), Some(name)) = (scenarios.first(), names.first()) {
@@ -95,17 +87,7 @@ pub fn of_study(gathered: &Gathered, file: &Path, folder: &Path) -> Result<Docum
         &profiles,
         scenarios.iter().any(settings::changes_profile),
     )?);
-    blocks.push(Block::heading("How to run it again"));
-    let (file, folder) = (file.display(), folder.display());
-    blocks.push(Block::Code(vec![
-        format!("sandbox sweep {file} --out {folder}"),
-        format!("sandbox report {file} --results {folder}"),
-    ]));
-    blocks.push(Block::Table(cells(gathered), format!(
-        "The runs. Digest: the first {DIGITS} of 64 digits of the SHA-256 of the final state, which the same version \
-         gives again on any number of threads (version {}, engine {ENGINE}).",
-        env!("CARGO_PKG_VERSION")
-    )));
+    blocks.extend(again(gathered, file, folder));
     Ok(Document::numbered(
         format!("Report on the study {}", study.name),
         description.to_owned(),
@@ -140,9 +122,8 @@ fn numbers(gathered: &Gathered, scenarios: &[Scenario]) -> Vec<Number> {
     let measurements = scenarios.iter().flat_map(|one| &one.measurements);
     let quantities = measurements.flat_map(|one| one.quantities());
     let known: BTreeMap<String, Quantity> = quantities.map(|one| (one.name.clone(), one)).collect();
-    let measured = gathered.numbers().into_iter();
-    let measured = measured.filter_map(|name| known.get(&name).cloned());
-    let measured = measured.map(
+    let names = gathered.numbers().into_iter();
+    let measured = names.filter_map(|name| known.get(&name).cloned()).map(
         |Quantity {
              name,
              unit,
@@ -159,13 +140,28 @@ fn numbers(gathered: &Gathered, scenarios: &[Scenario]) -> Vec<Number> {
     every.chain(measured).collect()
 }
 
+/// The results, and their definitions.
+fn results(numbers: &[Number], combinations: &[Combination], names: &[String]) -> Vec<Block> {
+    let parts = combinations.chunks(BESIDE).zip(names.chunks(BESIDE));
+    let tables = parts.map(|(part, names)| Block::table(side_by_side(numbers, part, names)));
+    let definitions = Table::of(numbers)
+        .column("result", |number| number.name.as_str())
+        .column("definition", |number| number.meaning.as_str())
+        .table();
+    let meaning = [
+        Block::text("What the results mean:"),
+        Block::Table(definitions, facts::DENSITY.to_owned()),
+    ];
+    tables.chain(meaning).collect()
+}
+
 /// Results in rows, combinations in columns.
 fn side_by_side(numbers: &[Number], combinations: &[Combination], names: &[String]) -> Table {
     let mut columns = Table::of(numbers).column("result", |number| number.name.as_str());
     for (one, name) in combinations.iter().zip(names) {
         columns = columns.column(&format!("{name} ({} runs)", one.results.len()), |number| {
-            let values = one.results.iter().filter_map(|run| (number.value)(run));
-            let values: Vec<f64> = values.collect();
+            let of_runs = one.results.iter().filter_map(|run| (number.value)(run));
+            let values: Vec<f64> = of_runs.collect();
             let mean = spread(&values)?;
             let (count, all) = (values.len(), one.results.len());
             Some(match count < all {
@@ -228,19 +224,19 @@ fn figures(gathered: &Gathered, combinations: &[Combination], names: &[String]) 
             Block::figure("", part, caption)
         }));
     }
-    let all = combinations.iter().zip(names).enumerate();
-    let all = all.take(MOST_LINES).flat_map(|(k, (one, name))| {
+    let numbered = combinations.iter().zip(names).enumerate();
+    let drawn = numbered.take(MOST_LINES).flat_map(|(k, (one, name))| {
         let own = curves(&one.results).into_iter();
         own.map(move |curve| (curve, color(k), name.clone()))
     });
-    let all: Vec<(Curve, _, String)> = all.collect();
+    let all: Vec<(Curve, _, String)> = drawn.collect();
     let kinds = distinct(all.iter().map(|(curve, ..)| curve.name.as_str()));
-    let panels = kinds.iter().filter_map(|kind| {
-        let own = all.iter().filter(|(curve, ..)| curve.name == *kind);
-        let own = own.map(|(curve, color, name)| (curve, *color, name.clone()));
+    let filled = kinds.iter().filter_map(|kind| {
+        let lines = all.iter().filter(|(curve, ..)| curve.name == *kind);
+        let own = lines.map(|(curve, color, name)| (curve, *color, name.clone()));
         panel(&own.collect::<Vec<_>>())
     });
-    let panels: Vec<_> = panels.collect();
+    let panels: Vec<_> = filled.collect();
     if !panels.is_empty() {
         let columns = panels.len().min(2);
         let sheet = Sheet::new("", columns, [220.0, 160.0], with_legend(panels, columns));
@@ -250,7 +246,25 @@ fn figures(gathered: &Gathered, combinations: &[Combination], names: &[String]) 
     blocks
 }
 
-/// The runs with their digests.
+/// The commands, and the runs with their digests.
+fn again(gathered: &Gathered, file: &Path, folder: &Path) -> [Block; 3] {
+    let (file, folder) = (file.display(), folder.display());
+    let commands = vec![
+        format!("sandbox sweep {file} --out {folder}"),
+        format!("sandbox report {file} --results {folder}"),
+    ];
+    let about = format!(
+        "The runs. Digest: the first {DIGITS} of 64 digits of the SHA-256 of the final state, which the same version \
+         gives again on any number of threads (version {}, engine {ENGINE}).",
+        env!("CARGO_PKG_VERSION")
+    );
+    [
+        Block::heading("How to run it again"),
+        Block::Code(commands),
+        Block::Table(cells(gathered), about),
+    ]
+}
+
 fn cells(gathered: &Gathered) -> Table {
     let rows: Vec<_> = gathered.study.cells.iter().zip(&gathered.states).collect();
     Table::of(&rows)

@@ -107,11 +107,9 @@ impl PageFile {
     pub fn finish(&mut self) -> Result<(), PageError> {
         self.parts = None;
         let gone = || Err(io::Error::other("the thread that writes has failed"));
-        let written = self
-            .thread
+        self.thread
             .take()
-            .map(|thread| thread.join().unwrap_or_else(|_| gone()));
-        written
+            .map(|thread| thread.join().unwrap_or_else(|_| gone()))
             .unwrap_or(Ok(()))
             .map_err(|error| unwritten(&self.path, &error))
     }
@@ -130,9 +128,8 @@ fn write_all(queue: &Receiver<Part>, mut file: File) -> io::Result<()> {
             Part::Text(text) => text,
             Part::Bytes(class, bytes) => html::bytes(class, &compress_to_vec(&bytes, FAST)),
             Part::Frames(blocks, series) => {
-                let names = ["crowd", "forces"];
-                let blocks = names.into_iter().zip(blocks);
-                let blocks = blocks.map(|(name, block)| html::bytes(name, &block.compressed()));
+                let named = ["crowd", "forces"].into_iter().zip(blocks);
+                let blocks = named.map(|(name, block)| html::bytes(name, &block.compressed()));
                 // The series come last: a part that is cut off is not read.
                 let series = compress_to_vec(series.to_string().as_bytes(), LEVEL);
                 blocks.chain([html::bytes("series", &series)]).collect()

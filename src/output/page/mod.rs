@@ -27,6 +27,7 @@ use block::Block;
 use engine::math::Vector;
 use figures::colors::ColorMap;
 use figures::html::{self, Head, escape};
+use figures::plot::Mark;
 use file::{PageFile, Part};
 use plan::{hex, millimeters};
 
@@ -78,64 +79,16 @@ impl Page {
     /// The file cannot be written.
     pub fn create(path: &Path, plan: &Picture, options: &PageOptions) -> Result<Self, PageError> {
         let mut file = PageFile::create(path)?;
-        let (shown, below, above) = plan.plan();
-        let origin = shown[0].map(f64::floor);
+        let plan = plan.plan();
+        let origin = plan.0[0].map(f64::floor);
         let mut columns = vec!["x", "y", "density", "speed"];
         let has_trips = !options.places.is_empty();
         if has_trips {
             columns.extend(["trip", "place"]);
         }
-        let [density, speed] = [options.density_range, options.speed_range];
-        let [density, speed] = [density, speed].map(|range| range.map(|end| end as f32));
-        let series = options.series.iter();
-        let series = series.map(|(plot, name, color)| json!([plot, name, hex(*color)]));
-        let terms = options.terms.iter();
-        let terms = terms.map(|(name, color)| json!([name, hex(*color)]));
-        let scene = json!({
-            "format": 1,
-            "origin": [origin.x, origin.y],
-            "shown": shown.map(|corner| [corner.x - origin.x, corner.y - origin.y].map(millimeters)),
-            "columns": columns,
-            "units": {
-                "position": POSITION, "density": DENSITY, "speed": SPEED, "acceleration": ACCELERATION,
-                "radius": RADIUS,
-            },
-            "below": plan::marks(&below, origin),
-            "above": plan::marks(&above, origin),
-            "colors": {
-                "density": plan::bar("density [P/m²]", &ColorMap::viridis(density)),
-                "speed": plan::bar("speed [m/s]", &ColorMap::inferno(speed)),
-            },
-            "stages": options.has_stages.then(|| scenery::STAGES.map(|(_, color)| hex(color))),
-            "opens_at": options.opens_at,
-            "follows": options.follows,
-            "groups": options.groups,
-            "places": options.places,
-            "terms": terms.collect::<Vec<_>>(),
-            "series": series.collect::<Vec<_>>(),
-        });
-        let script = match options.has_viewer {
-            true => format!("{SCRIPT}{RERUN}"),
-            false => SCRIPT.to_owned(),
-        };
-        let allowed = if options.has_viewer {
-            embedded::ALLOWED
-        } else {
-            ""
-        };
-        let head = Head {
-            title: &options.title,
-            style: STYLE,
-            script: &script,
-            allowed,
-        };
-        let texts = [&options.title, &options.description].map(|text| escape(text));
-        let [title, description] = texts;
-        let body = BODY
-            .replace("{title}", &title)
-            .replace("{description}", &description);
+        let scene = options.scene(plan, origin, &columns);
         file.write(Part::Text(
-            head.text() + &body + &html::data("scene", &scene),
+            options.beginning() + &html::data("scene", &scene),
         ))?;
         let forces = 2 * options.terms.len();
         Ok(Self {
@@ -190,8 +143,8 @@ impl Page {
         }
         self.forces.begin_frame();
         for (id, terms) in &moment.forces {
-            let values = terms.iter().flat_map(|term| [term.x, term.y]);
-            let values = values.map(|value| whole(value, ACCELERATION));
+            let components = terms.iter().flat_map(|term| [term.x, term.y]);
+            let values = components.map(|value| whole(value, ACCELERATION));
             self.forces.add((*id).into(), [0, 0], values);
         }
     }
@@ -208,10 +161,10 @@ impl Page {
             true => vec![crowd, forces],
             false => vec![crowd],
         };
-        let series: Vec<_> = self.series.iter_mut().map(std::mem::take).collect();
+        let values: Vec<_> = self.series.iter_mut().map(std::mem::take).collect();
         let times = std::mem::take(&mut self.times);
         let events = std::mem::take(&mut self.events);
-        let series = json!({"times": times, "series": series, "events": events});
+        let series = json!({"times": times, "series": values, "events": events});
         self.file.write(Part::Frames(blocks.into(), series))
     }
 
@@ -247,6 +200,66 @@ impl Page {
         );
         self.file.write(Part::Text(format!("{results}{end}")))?;
         self.file.finish()
+    }
+}
+
+impl PageOptions {
+    /// The file up to the plan.
+    fn beginning(&self) -> String {
+        let script = match self.has_viewer {
+            true => format!("{SCRIPT}{RERUN}"),
+            false => SCRIPT.to_owned(),
+        };
+        let head = Head {
+            title: &self.title,
+            style: STYLE,
+            script: &script,
+            allowed: match self.has_viewer {
+                true => embedded::ALLOWED,
+                false => "",
+            },
+        };
+        let [title, description] = [&self.title, &self.description].map(|text| escape(text));
+        let body = BODY
+            .replace("{title}", &title)
+            .replace("{description}", &description);
+        head.text() + &body
+    }
+
+    /// What does not move: the plan, with places from `origin` on, and the words and colors of everything.
+    fn scene(
+        &self,
+        (shown, below, above): ([Vector; 2], Vec<Mark>, Vec<Mark>),
+        origin: Vector,
+        columns: &[&str],
+    ) -> Value {
+        let density = self.density_range.map(|end| end as f32);
+        let speed = self.speed_range.map(|end| end as f32);
+        let series = self.series.iter();
+        let terms = self.terms.iter();
+        json!({
+            "format": 1,
+            "origin": [origin.x, origin.y],
+            "shown": shown.map(|corner| [corner.x - origin.x, corner.y - origin.y].map(millimeters)),
+            "columns": columns,
+            "units": {
+                "position": POSITION, "density": DENSITY, "speed": SPEED, "acceleration": ACCELERATION,
+                "radius": RADIUS,
+            },
+            "below": plan::marks(&below, origin),
+            "above": plan::marks(&above, origin),
+            "colors": {
+                "density": plan::bar("density [P/m²]", &ColorMap::viridis(density)),
+                "speed": plan::bar("speed [m/s]", &ColorMap::inferno(speed)),
+            },
+            "stages": self.has_stages.then(|| scenery::STAGES.map(|(_, color)| hex(color))),
+            "opens_at": self.opens_at,
+            "follows": self.follows,
+            "groups": self.groups,
+            "places": self.places,
+            "terms": terms.map(|(name, color)| json!([name, hex(*color)])).collect::<Value>(),
+            "series": series.map(|(plot, name, color)| json!([plot, name, hex(*color)])).collect::<Value>(),
+        })
     }
 }
 

@@ -48,8 +48,7 @@ pub struct PageOptions {
 impl PageOptions {
     /// A page of people of whom only positions, speeds and densities are known.
     pub fn watched() -> Self {
-        let crowd = CROWD.iter().zip(PLOTS);
-        let series = crowd.map(|((_, name, color), plot)| {
+        let series = CROWD.iter().zip(PLOTS).map(|((_, name, color), plot)| {
             let name = name.split_once(" [").map_or(*name, |(name, _)| name);
             (plot.to_owned(), name.to_owned(), *color)
         });
@@ -75,9 +74,9 @@ impl PageOptions {
                 (plot.to_owned(), name, color)
             }));
         let group = |group: &Group| {
-            let journey = group.journey.map(usize::from);
-            let journey = journey.and_then(|k| scene.journeys.journeys.get(k));
-            let journey = journey.map(|journey| journey.name.clone());
+            let number = group.journey.map(usize::from);
+            let found = number.and_then(|k| scene.journeys.journeys.get(k));
+            let journey = found.map(|journey| journey.name.clone());
             [
                 group.name.clone(),
                 group.blend.name.clone(),

@@ -25,8 +25,8 @@ pub fn bar(text: &str, map: &ColorMap) -> Value {
         let [r, g, b] = map.color((first + part * (last - first)) as f32);
         format!("{r:02x}{g:02x}{b:02x}")
     });
-    let numbers = round::ticks([first, last], MOST_STEPS);
-    let numbers = numbers.into_iter().map(|at| json!([at, round::text(at)]));
+    let ticks = round::ticks([first, last], MOST_STEPS);
+    let numbers = ticks.into_iter().map(|at| json!([at, round::text(at)]));
     json!({
         "text": text,
         "range": [first, last],

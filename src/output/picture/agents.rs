@@ -173,8 +173,8 @@ pub fn legend(picture: &Picture, has_paths: bool) -> Vec<Entry> {
         } else {
             "shortest way"
         };
-        let waits = format!("people wait {LEAST_WAIT} s or more");
-        let waits = entry(&waits, Look::Line(waited(LEAST_WAIT)));
+        let words = format!("people wait {LEAST_WAIT} s or more");
+        let waits = entry(&words, Look::Line(waited(LEAST_WAIT)));
         let shown = [
             entry("agent", Look::Agent(FAINT)),
             entry(way, Look::Line(Style::full(BLACK, 0.9, ""))),
@@ -191,26 +191,26 @@ pub fn legend(picture: &Picture, has_paths: bool) -> Vec<Entry> {
         entry(&text, Look::Line(Style::full(TRAIL, TRAIL_WIDTH, "")))
     });
     if let Some(coloring) = &picture.coloring {
-        let unknown = coloring.values.iter().any(|value| value.is_nan());
-        let unknown = unknown.then(|| entry("no data", Look::Agent(FAINT)));
+        let has_unknown = coloring.values.iter().any(|value| value.is_nan());
+        let unknown = has_unknown.then(|| entry("no data", Look::Agent(FAINT)));
         return unknown.into_iter().chain(path).collect();
     }
     if picture.field.is_some() {
         return path.into_iter().collect();
     }
-    let mut shown = Vec::new();
+    let mut entries = Vec::new();
     for seen in doings(picture) {
-        if !shown.contains(&seen) {
-            shown.push(seen);
+        if !entries.contains(&seen) {
+            entries.push(seen);
         }
     }
-    shown.sort_by_key(|(text, _)| std::cmp::Reverse(*text));
-    if let [(text, _)] = &mut shown[..]
+    entries.sort_by_key(|(text, _)| std::cmp::Reverse(*text));
+    if let [(text, _)] = &mut entries[..]
         && picture.scene.journeys.places.is_empty()
     {
         *text = "agent";
     }
-    let shown = shown.into_iter();
+    let shown = entries.into_iter();
     shown
         .map(|(text, color)| entry(text, Look::Agent(color)))
         .chain(path)

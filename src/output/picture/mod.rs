@@ -106,8 +106,8 @@ struct Frame {
 impl Frame {
     /// A frame around a part of the plane, in a panel of at most `most` points, `foot` of which are below it.
     fn around([low, high]: [Vector; 2], most: [f64; 2], foot: f64) -> Self {
-        let room = [most[0] - 2.0 * MARGIN, most[1] - MARGIN - foot];
-        let room = room.map(|room| room.max(LEAST));
+        let inner = [most[0] - 2.0 * MARGIN, most[1] - MARGIN - foot];
+        let room = inner.map(|room| room.max(LEAST));
         let extent = high - low;
         let scale = (room[0] / extent.x).min(room[1] / extent.y);
         let lengths = [0, 1].map(|k| (extent[k] * scale).max(SMALLEST[k].min(room[k])) / scale);
@@ -261,8 +261,8 @@ impl<'a> Picture<'a> {
         let places = scene::places(self, frame, &mut labels);
         let mut below = scene::ground(scene);
         let mut above = Vec::new();
-        let drawn = paths.zip(self.simulation);
-        let drawn = drawn.map(|(paths, simulation)| paths.draw(simulation, frame));
+        let drawable = paths.zip(self.simulation);
+        let drawn = drawable.map(|(paths, simulation)| paths.draw(simulation, frame));
         let (title, bar) = match drawn {
             Some(drawn) => {
                 below.extend(drawn.field);
@@ -323,11 +323,10 @@ impl<'a> Picture<'a> {
     pub fn plan(&self) -> ([Vector; 2], Vec<Mark>, Vec<Mark>) {
         let shown = self.shown();
         let frame = Frame::around(shown, ALONE, MARGIN);
-        let labels = Labels::new(frame.screen(), self.avoided(&frame));
-        let mut labels = labels.among_areas(self.scene);
+        let mut labels = Labels::new(frame.screen(), self.avoided(&frame)).among_areas(self.scene);
         let places = scene::places(self, &frame, &mut labels);
-        let below = scene::ground(self.scene).into_iter();
-        let below = below.chain(scene::tints(self.scene)).collect();
+        let ground = scene::ground(self.scene).into_iter();
+        let below = ground.chain(scene::tints(self.scene)).collect();
         let mut above = scene::walls(self.scene);
         above.extend(self.lines(&frame, true, (Vec::new(), places), labels));
         (shown, below, above)

@@ -67,13 +67,13 @@ impl Paths {
                 map,
             })
         };
-        let borders = (0..grid.len()).map(|k| field.is_border(k).then_some(0.0));
-        let borders = cells(borders.collect(), ColorMap::plain(BORDER));
-        let corners = field.corners();
-        let corners = corners
+        let values = (0..grid.len()).map(|k| field.is_border(k).then_some(0.0));
+        let borders = cells(values.collect(), ColorMap::plain(BORDER));
+        let numbers = field.corners();
+        let places = numbers
             .iter()
             .map(|&c| self.ways.floor.corners[c as usize].place);
-        let corners = Mark::dots(corners.map(xy), Style::full(BORDER, 1.7, ""));
+        let corners = Mark::dots(places.map(xy), Style::full(BORDER, 1.7, ""));
         let mut lines = self.arrows(frame);
         let starts = self.starts(simulation);
         let has_rooms = simulation.scene().rooms().is_some() && self.is_known;
@@ -112,11 +112,11 @@ impl Paths {
         let mut order: Vec<usize> = agents.present().collect();
         order.sort_unstable_by_key(|&i| agents.id[i]);
         let bound: Vec<usize> = order.iter().copied().filter(wants).collect();
-        let chosen = if bound.is_empty() { order } else { bound };
-        let entries = scene.sources.iter();
-        let entries = entries.flat_map(|source| source.grid.positions(scene.seed, 0).take(50));
-        let every = chosen.len().div_ceil(CANDIDATES).max(1);
-        let chosen = chosen.iter().step_by(every);
+        let candidates = if bound.is_empty() { order } else { bound };
+        let sources = scene.sources.iter();
+        let entries = sources.flat_map(|source| source.grid.positions(scene.seed, 0).take(50));
+        let every = candidates.len().div_ceil(CANDIDATES).max(1);
+        let chosen = candidates.iter().step_by(every);
         let mut from: Vec<Vector> = chosen.map(|&i| agents.position[i]).collect();
         if from.is_empty() {
             let lines = scene.entrances.iter().flat_map(|entrance| entrance.line);
@@ -129,8 +129,8 @@ impl Paths {
     /// Arrows in the direction of the next corner, at the points of a grid.
     fn arrows(&self, frame: &Frame) -> Vec<Mark> {
         let grid = Grid::over([frame.min, frame.max], frame.meters(ARROWS));
-        let on_floor = (0..grid.len()).map(|k| grid.center(k));
-        let on_floor = on_floor.filter(|&p| self.ways.floor.locate(p).is_some());
+        let centers = (0..grid.len()).map(|k| grid.center(k));
+        let on_floor = centers.filter(|&p| self.ways.floor.locate(p).is_some());
         let arrow = |p: Vector| {
             let way = self.ways.open_way(p, self.to)?;
             let next = way.next.place(&self.ways.floor);

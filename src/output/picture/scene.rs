@@ -28,8 +28,8 @@ pub fn ground(scene: &Scene) -> Vec<Mark> {
     let is_enclosed = obstacles.iter().any(|obstacle| obstacle.is_unbounded());
     let around = if is_enclosed { OUTSIDE } else { FLOOR };
     let first = Mark::rectangle([-FAR, FAR], [-FAR, FAR], around);
-    let rings = obstacles.iter().flat_map(|obstacle| obstacle.rings());
-    let mut rings: Vec<(f64, &[Vector])> = rings.map(|ring| (signed_area(ring), ring)).collect();
+    let outlines = obstacles.iter().flat_map(|obstacle| obstacle.rings());
+    let mut rings: Vec<(f64, &[Vector])> = outlines.map(|ring| (signed_area(ring), ring)).collect();
     // The largest first: each ring lies on those around it.
     rings.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     let areas = rings.into_iter().map(|(area, ring)| {
@@ -52,8 +52,8 @@ pub fn tints(scene: &Scene) -> Vec<Mark> {
     let area = |corners: &[Vector], color| {
         Mark::Area(corners.iter().map(|&p| xy(p)).collect(), light(color, 0.22))
     };
-    let zones = journeys.zones.iter();
-    let zones = zones.map(|zone| area(zone.area.points(), ZONE));
+    let all = journeys.zones.iter();
+    let zones = all.map(|zone| area(zone.area.points(), ZONE));
     let waiting = journeys
         .places
         .iter()
@@ -122,29 +122,29 @@ pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark
     let all = &picture.scene.journeys.places;
     let screen = frame.screen();
     for (k, place) in all.iter().enumerate() {
-        let color = scenery::color(&place.kind);
+        let usual = scenery::color(&place.kind);
         let lines: Vec<Vector> = scenery::lines(place);
         let simulation = picture.simulation;
         let is_closed = picture.closed.contains(&k)
             || simulation.is_some_and(|simulation| scenery::is_closed(simulation, k));
         let style = match &place.kind {
             Kind::Exit(_) | Kind::Door(_) if is_closed => Style::full(CLOSED, 3.4, ""),
-            Kind::Exit(_) => Style::full(color, 3.4, ""),
-            Kind::Door(_) => Style::full(color, 2.2, ""),
-            Kind::Line(_) | Kind::Disk { .. } => Style::broken(color, 1.6, ""),
-            Kind::Waiting(_) => Style::full(color, 1.2, ""),
-            Kind::Queue(_) => Style::full(color, 1.0, ""),
+            Kind::Exit(_) => Style::full(usual, 3.4, ""),
+            Kind::Door(_) => Style::full(usual, 2.2, ""),
+            Kind::Line(_) | Kind::Disk { .. } => Style::broken(usual, 1.6, ""),
+            Kind::Waiting(_) => Style::full(usual, 1.2, ""),
+            Kind::Queue(_) => Style::full(usual, 1.0, ""),
         };
         marks.push(Mark::line(lines.iter().map(|&p| xy(p)), style));
         if let Kind::Queue(queue) = &place.kind {
             let spots = scenery::spots(queue).into_iter().map(xy);
-            marks.push(Mark::dots(spots, Style::broken(color, 2.0, "")));
+            marks.push(Mark::dots(spots, Style::broken(usual, 2.0, "")));
             let front = [xy(queue.path[0])];
-            marks.push(Mark::dots(front, Style::full(color, 3.2, "")));
+            marks.push(Mark::dots(front, Style::full(usual, 3.2, "")));
         }
         let closed = if is_closed { " (closed)" } else { "" };
         let text = scenery::named(place.kind.name(), &place.name) + closed;
-        let color = if is_closed { CLOSED } else { color };
+        let color = if is_closed { CLOSED } else { usual };
         let similar = scenery::alike(picture.scene, place);
         let spots = of_place(&picture.scene.walls, place, &lines, &screen);
         labels.add_of(similar, &text, (color, &spots));

@@ -45,9 +45,9 @@ pub fn log_lines(
     (rgb, half_width, order): Look,
     lines: impl IntoIterator<Item = Vec<Vector>>,
 ) -> Result<(), Cause> {
-    let lines = lines.into_iter();
-    let strips = lines.map(|line| line.into_iter().map(xy).collect::<Vec<_>>());
-    let strips: Vec<_> = strips.collect();
+    let outlines = lines.into_iter();
+    let placed = outlines.map(|line| line.into_iter().map(xy).collect::<Vec<_>>());
+    let strips: Vec<_> = placed.collect();
     if strips.is_empty() {
         return Ok(());
     }
@@ -77,8 +77,8 @@ pub fn log_classes(
     classes: &[Class],
     order: f32,
 ) -> Result<(), Cause> {
-    let classes = classes.iter();
-    let classes = classes.map(|(id, name, color)| (u16::from(*id), name.as_str(), *color));
+    let all = classes.iter();
+    let classes = all.map(|(id, name, color)| (u16::from(*id), name.as_str(), *color));
     let size = [grid.columns as u32, grid.rows as u32];
     let format = ImageFormat::from_color_model(size, ColorModel::L, ChannelDatatype::U8);
     let image = SegmentationImage::new(pixels, format)

@@ -110,8 +110,8 @@ impl Recorder {
             (&WALL_FORCES, options.body_mass.is_some()),
             (&LEANS, simulation.needs().legs),
         ];
-        let lines = layers.into_iter().filter(|(_, has)| *has);
-        let lines: Vec<_> = lines.map(|(layer, _)| layer).collect();
+        let drawn = layers.into_iter().filter(|(_, has)| *has);
+        let lines: Vec<_> = drawn.map(|(layer, _)| layer).collect();
         let log_own = |stream: &RecordingStream| {
             let document = text::of_run(stream, scene, options)?;
             scene::log(stream, simulation, options)?;
@@ -120,8 +120,8 @@ impl Recorder {
                 layer.log_style(stream)?;
             }
             let terms = arrows::acting(scene);
-            let focuses = names.iter();
-            let focuses = focuses.map(|name| Focus::begin(stream, name.clone(), &terms));
+            let all = names.iter();
+            let focuses = all.map(|name| Focus::begin(stream, name.clone(), &terms));
             let debug = Debug {
                 layers: layers::begin(stream, scene, &options.debug)?,
                 focuses: focuses.collect::<Result<_, _>>()?,
@@ -226,8 +226,8 @@ pub fn record_moment(
 ) -> Result<(), RecordingError> {
     let mut recorder = Recorder::begin(&to.into(), simulation, options, Kind::Moment)?;
     let snapshot = recorder.snapshot(simulation, 0.0);
-    let followed = snapshot.followed.iter().flatten();
-    let followed: Vec<_> = followed.map(|&k| &snapshot.open[k]).collect();
+    let open = snapshot.followed.iter().flatten();
+    let followed: Vec<_> = open.map(|&k| &snapshot.open[k]).collect();
     recorder.session.log_static(|stream| {
         let mut agents = followed.iter();
         agents.try_for_each(|agent| moment::log(stream, agent))

@@ -62,9 +62,9 @@ impl Recorded {
             reason,
         };
         let mut file = File::open(path).map_err(|error| unread(error.to_string()))?;
-        let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::ALL_DISABLED, &mut file);
-        let stores = stores.map_err(|error| unread(format!("{error:#}")))?;
-        let mut stores = stores.into_iter();
+        let found = ChunkStore::from_rrd_reader(&ChunkStoreConfig::ALL_DISABLED, &mut file);
+        let read = found.map_err(|error| unread(format!("{error:#}")))?;
+        let mut stores = read.into_iter();
         let store = stores.find(|(id, _)| id.kind() == StoreKind::Recording);
         let (_, store) = store.ok_or_else(|| unread("it has no recording".to_owned()))?;
         let mut recorded = Self {
@@ -128,10 +128,10 @@ impl Recorded {
 
     /// The crowd in the `k`-th frame.
     pub fn crowd(&self, k: usize) -> RecordedCrowd {
-        let positions = self.latest(k, POSITIONS);
-        let positions = positions.and_then(|row| numbers(row.as_fixed_size_list_opt()?.values()));
-        let positions = positions.unwrap_or_default();
-        let positions: Vec<Vector> = positions
+        let row = self.latest(k, POSITIONS);
+        let values = row.and_then(|row| numbers(row.as_fixed_size_list_opt()?.values()));
+        let flat = values.unwrap_or_default();
+        let positions: Vec<Vector> = flat
             .chunks_exact(2)
             .map(Vector::from_column_slice)
             .collect();
@@ -190,8 +190,8 @@ impl Recorded {
 }
 
 fn numbers(array: &ArrayRef) -> Option<Vec<f64>> {
-    let numbers = cast(array, &DataType::Float64).ok()?;
-    let numbers = numbers.as_primitive_opt::<Float64Type>()?;
+    let floats = cast(array, &DataType::Float64).ok()?;
+    let numbers = floats.as_primitive_opt::<Float64Type>()?;
     Some(numbers.values().to_vec())
 }
 
@@ -201,8 +201,8 @@ fn strips(row: &ArrayRef) -> Vec<Vec<Vector>> {
         return Vec::new();
     };
     let strip = |k: usize| {
-        let points = lists.value(k);
-        let numbers = numbers(points.as_fixed_size_list_opt()?.values())?;
+        let list = lists.value(k);
+        let numbers = numbers(list.as_fixed_size_list_opt()?.values())?;
         let mut points: Vec<Vector> = numbers
             .chunks_exact(2)
             .map(Vector::from_column_slice)

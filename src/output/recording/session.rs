@@ -71,8 +71,8 @@ impl Session {
             stats::log_style(stream)?;
             stream.flush_blocking()?;
             let stream = stream.clone();
-            let thread = std::thread::Builder::new().name("recording".to_owned());
-            let thread = thread.spawn(move || write_all(&stream, queue, maps, debug))?;
+            let builder = std::thread::Builder::new().name("recording".to_owned());
+            let thread = builder.spawn(move || write_all(&stream, queue, maps, debug))?;
             Ok((document, thread))
         };
         let (document, thread) = output.checked(begin(&output.stream))?;

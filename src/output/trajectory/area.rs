@@ -56,8 +56,8 @@ impl WalkableArea {
         }
         let obstacles = scene.walls.obstacles();
         let corners = obstacles.iter().flat_map(|obstacle| obstacle.points());
-        let everything = entries.iter().chain(&goals).chain(corners);
-        let everything = everything.chain([&view.min, &view.max]);
+        let inside = entries.iter().chain(&goals).chain(corners);
+        let everything = inside.chain([&view.min, &view.max]);
         let [min, max] = bounds(everything.copied()).unwrap_or_default();
         let margin = Vector::new(MARGIN, MARGIN);
         let (floors, obstacles) = outlines(obstacles);
@@ -74,7 +74,7 @@ impl WalkableArea {
     pub fn reach(&mut self, rows: &[Row<'_>]) -> bool {
         let mut grown = false;
         for row in rows {
-            let place = Vector::new(row.pos_x, row.pos_y);
+            let place = row.position();
             let [low, high] = self.bounds;
             if (place - low).min() <= 0.0 || (high - place).min() <= 0.0 {
                 let margin = Vector::new(MARGIN, MARGIN);

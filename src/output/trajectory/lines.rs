@@ -37,7 +37,7 @@ impl Lines {
         })
     }
 
-    /// Every field of a [`Row`], below a header with their names.
+    /// [`COLUMNS`](super::COLUMNS), below a header with their names.
     pub fn csv(file: File) -> Self {
         Self {
             file,
@@ -70,8 +70,8 @@ fn text(rows: &[Row<'_>], _: bool) -> Result<Vec<u8>, Cause> {
     let parts = rows.par_chunks(SOME).map(|rows| {
         let mut lines = Vec::new();
         for row in rows {
-            let Row { id, frame, .. } = row;
-            writeln!(lines, "{id}\t{frame}\t{}\t{}\t0", row.pos_x, row.pos_y)?;
+            let (id, frame, at) = (row.id(), row.number, row.position());
+            writeln!(lines, "{id}\t{frame}\t{}\t{}\t0", at.x, at.y)?;
         }
         Ok(lines)
     });

@@ -2,7 +2,7 @@
 
 use super::area::WalkableArea;
 use super::error::Cause;
-use super::row::{Cell, Row, rows};
+use super::row::{COLUMNS, Row, Value, rows};
 use super::{TrajectoryError, frames_between};
 use engine::scene::Region;
 use engine::simulation::Simulation;
@@ -24,24 +24,21 @@ pub enum Column {
 }
 
 /// The columns of a CSV file, some of them or all.
-#[derive(Debug, Clone, PartialEq)]
 pub struct Columns {
-    /// The number of the field of a [`Row`], its name, and the values.
-    kept: Vec<(usize, &'static str, Column)>,
+    /// The name, how a row fills it, and the values.
+    kept: Vec<(&'static str, Value, Column)>,
 }
 
 impl Columns {
     /// The names of all columns, with their meanings and units.
     pub fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
-        let cells = Row::default().cells().into_iter();
-        cells.map(|(name, meaning, _)| (name, meaning))
+        COLUMNS.iter().map(|&(name, meaning, _)| (name, meaning))
     }
 
     /// No rows yet, of the columns for which `is_kept` holds.
     pub fn new(is_kept: impl Fn(&str) -> bool) -> Self {
-        let cells = Row::default().cells().into_iter().enumerate();
-        let kept = cells.filter(|(_, (name, ..))| is_kept(name));
-        let begun = kept.map(|(k, (name, _, cell))| (k, name, Column::of(cell)));
+        let kept = COLUMNS.iter().filter(|(name, ..)| is_kept(name));
+        let begun = kept.map(|&(name, _, value)| (name, value, Column::of(value)));
         Self {
             kept: begun.collect(),
         }
@@ -53,31 +50,26 @@ impl Columns {
     }
 
     fn append(&mut self, rows: &[Row<'_>]) {
-        for row in rows {
-            let cells = row.cells();
-            for (k, _, column) in &mut self.kept {
-                column.push(cells[*k].2);
-            }
+        for (_, value, column) in &mut self.kept {
+            rows.iter().for_each(|row| column.push(*value, row));
         }
     }
 
     /// The names of the columns, and their values; without columns of legs if no agent has legs.
     pub fn into_values(self) -> impl Iterator<Item = (&'static str, Column)> {
-        let kept = self
-            .kept
-            .into_iter()
-            .filter(|(.., column)| !column.is_void());
-        kept.map(|(_, name, column)| (name, column))
+        let kept = self.kept.into_iter();
+        kept.filter(|(.., column)| !column.is_void())
+            .map(|(name, _, column)| (name, column))
     }
 }
 
 impl Column {
-    /// An empty column of cells such as this one.
-    fn of(cell: Cell<'_>) -> Self {
-        match cell {
-            Cell::Count(_) => Self::Counts(Vec::new()),
-            Cell::Number(_) => Self::Numbers(Vec::new()),
-            Cell::Name(_) => Self::Names {
+    /// An empty column of such values.
+    fn of(value: Value) -> Self {
+        match value {
+            Value::Count(_) => Self::Counts(Vec::new()),
+            Value::Number(_) | Value::OfLegs(_) => Self::Numbers(Vec::new()),
+            Value::Name(_) => Self::Names {
                 codes: Vec::new(),
                 names: Vec::new(),
             },
@@ -92,12 +84,14 @@ impl Column {
         !values.is_empty() && values.iter().all(|value| value.is_nan())
     }
 
-    fn push(&mut self, cell: Cell<'_>) {
-        match (self, cell) {
-            (Self::Counts(values), Cell::Count(value)) => values.push(value),
-            (Self::Numbers(values), Cell::Number(value)) => values.push(value),
-            (Self::Names { codes, names }, Cell::Name(name)) => codes.push(code(names, name)),
-            // A field has one type.
+    /// Adds the value of a row.
+    fn push(&mut self, value: Value, row: &Row<'_>) {
+        match (self, value) {
+            (Self::Counts(values), Value::Count(of)) => values.push(of(row)),
+            (Self::Numbers(values), Value::Number(of)) => values.push(of(row)),
+            (Self::Numbers(values), Value::OfLegs(of)) => values.push(of(row).unwrap_or(f64::NAN)),
+            (Self::Names { codes, names }, Value::Name(of)) => codes.push(code(names, of(row))),
+            // A column is that of its value.
             _ => {}
         }
     }

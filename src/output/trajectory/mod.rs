@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | `.sqlite`, `.db` | JuPedSim, PedPy | positions and orientations, the walkable area as WKT, and density, pressure, speed |
 //! | `.txt` | PedPy, the Pedestrian Dynamics Data Archive's tools | positions, in text |
-//! | `.csv` | everything | every quantity of every agent: the fields of [`Row`] |
+//! | `.csv` | everything | every quantity of every agent: [`COLUMNS`] |
 //!
 //! Frames are numbered 0, 1, 2, … at the file's own rate. Numbers are the values of the evaluated frame, with all
 //! digits. An interrupted run leaves whole frames: a text file has each frame as soon as it is logged, a SQLite file
@@ -20,7 +20,7 @@ mod sqlite;
 
 pub use error::{Cause, TrajectoryError};
 pub use memory::{Collected, Column, Columns, walkable_area};
-pub use row::{Cell, Row};
+pub use row::{COLUMNS, Row, Value};
 pub use sqlite::journal;
 
 use std::fs::{self, File};
@@ -144,11 +144,11 @@ impl Trajectory {
     /// # Errors
     /// The file cannot be written, for example because the disk is full. Frames already written are kept.
     pub fn log(&mut self, simulation: &Simulation) -> Result<(), TrajectoryError> {
-        let frame = simulation.frame().clock.frame();
-        if !frame.is_multiple_of(self.every) {
+        let number = simulation.frame().clock.frame();
+        if !number.is_multiple_of(self.every) {
             return Ok(());
         }
-        let frame = frame / self.every;
+        let frame = number / self.every;
         let written = self.sink.write(frame, &row::rows(simulation, frame));
         self.checked(written)
     }

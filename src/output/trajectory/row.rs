@@ -1,258 +1,193 @@
-//! One agent in one frame.
+//! One agent in one frame, and its columns.
 
-use rayon::prelude::*;
-use serde::Serialize;
+use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 use engine::agents::Agents;
-use engine::frame::Frame;
+use engine::frame::{Fields, Frame};
 use engine::math::{Vector, direction};
+use engine::scene::{Group, Scene};
 use engine::simulation::Simulation;
 
 /// Below this speed, m/s, an agent faces its goal: the direction of such a velocity is noise.
 const STANDING: f64 = 0.01;
 
-/// All quantities of one agent in one frame. The fields are the columns of a CSV file. SI units.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+/// One agent in one evaluated frame. As a record it has the fields of [`COLUMNS`].
+#[derive(Clone, Copy)]
 pub struct Row<'a> {
     /// The frame's number at the file's own rate, from 0.
-    pub frame: u64,
+    pub number: u64,
     /// Seconds.
-    pub time: f64,
-    /// Unique, from 0 in the order of entry. In a periodic scene each lap of an agent has an id of its own: its
-    /// remainder modulo the number of agents is the agent's id.
-    pub id: u32,
-    /// The name of the agent's group.
-    pub group: &'a str,
-    /// The push that the agent takes part in.
-    pub push: Option<&'a str>,
-    /// r_i, meters.
-    pub pos_x: f64,
-    /// Its y component.
-    pub pos_y: f64,
-    /// v_i, m/s.
-    pub vel_x: f64,
-    /// Its y component.
-    pub vel_y: f64,
-    /// |v_i|, m/s.
-    pub speed: f64,
-    /// Direction of the velocity, or of the goal if the agent stands still: a unit vector.
-    pub ori_x: f64,
-    /// Its y component.
-    pub ori_y: f64,
-    /// g_i, meters; the start of an agent that walks in a direction.
-    pub goal_x: f64,
-    /// Its y component.
-    pub goal_y: f64,
-    /// D_i, meters.
-    pub radius: f64,
-    /// m_i, 1 = an average person.
-    pub mass: f64,
-    /// ρ_i, P/m².
-    pub density: f64,
-    /// The walls' part of ρ_i, P/m².
-    pub density_from_walls: f64,
-    /// ρ̂_i, P/m².
-    pub mean_density: f64,
-    /// ρ_i⁰, P/m².
-    pub rest_density: f64,
-    /// p_i, 1/s².
-    pub pressure: f64,
-    /// Σ_k ∫ ∇W over P_k, 1/m.
-    pub wall_gradient_x: f64,
-    /// Its y component.
-    pub wall_gradient_y: f64,
-    /// v_i^pref, m/s.
-    pub preferred_vel_x: f64,
-    /// Its y component.
-    pub preferred_vel_y: f64,
-    /// a_i, m/s².
-    pub acc_x: f64,
-    /// Its y component.
-    pub acc_y: f64,
-    /// y_i, the position of the legs, meters; `None`, and no column, if no profile has legs.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub legs_x: Option<f64>,
-    /// Its y component.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub legs_y: Option<f64>,
-    /// w_i, the velocity of the legs, m/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub legs_vel_x: Option<f64>,
-    /// Its y component.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub legs_vel_y: Option<f64>,
-    /// |r_i − y_i|, meters.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lean: Option<f64>,
+    time: f64,
+    agents: &'a Agents,
+    fields: &'a Fields,
+    scene: &'a Scene,
+    i: usize,
 }
 
-/// The value of a field.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Cell<'a> {
+/// How a row fills a column.
+#[derive(Clone, Copy)]
+pub enum Value {
     /// A whole number.
-    Count(u64),
-    /// A number; NaN if there is none.
-    Number(f64),
-    /// A name; `None` if there is none.
-    Name(Option<&'a str>),
+    Count(fn(&Row<'_>) -> u64),
+    /// A number.
+    Number(fn(&Row<'_>) -> f64),
+    /// A number of the legs; `None`, and no column in files, if no profile has legs.
+    OfLegs(fn(&Row<'_>) -> Option<f64>),
+    /// A name, if there is one.
+    Name(for<'a> fn(&Row<'a>) -> Option<&'a str>),
 }
+
+use Value::{Count, Name, Number, OfLegs};
+
+/// The name, the meaning with its unit, and the value of each column. In a periodic scene each lap of an agent has an
+/// id of its own: its remainder modulo the number of agents is the agent's id. The goal of an agent that walks in a
+/// direction is its start.
+#[rustfmt::skip] // One line each.
+pub const COLUMNS: [(&str, &str, Value); 32] = [
+    ("frame", "number of the frame at the file's own rate", Count(|row| row.number)),
+    ("time", "time, s", Number(|row| row.time)),
+    ("id", "the agent, from 0 in the order of entry", Count(|row| row.id().into())),
+    ("group", "name of the agent's group", Name(|row| Some(&row.group().name))),
+    ("push", "name of the push that the agent takes part in", Name(|row| row.push())),
+    ("pos_x", "position, m", Number(|row| row.position().x)),
+    ("pos_y", "position, m", Number(|row| row.position().y)),
+    ("vel_x", "velocity, m/s", Number(|row| row.velocity().x)),
+    ("vel_y", "velocity, m/s", Number(|row| row.velocity().y)),
+    ("speed", "speed, m/s", Number(|row| row.speed())),
+    ("ori_x", "direction in which the agent faces, of length 1", Number(|row| row.orientation().x)),
+    ("ori_y", "direction in which the agent faces, of length 1", Number(|row| row.orientation().y)),
+    ("goal_x", "goal, m", Number(|row| row.agents.goal[row.i].x)),
+    ("goal_y", "goal, m", Number(|row| row.agents.goal[row.i].y)),
+    ("radius", "radius of the body, m", Number(|row| row.agents.radius[row.i])),
+    ("mass", "mass, 1 = an average person", Number(|row| row.mass())),
+    ("density", "density, P/m²", Number(|row| row.density())),
+    ("density_from_walls", "the walls' part of the density, P/m²", Number(|row| row.fields.density_from_walls[row.i])),
+    ("mean_density", "mean density of the last seconds, P/m²", Number(|row| row.fields.mean_density[row.i])),
+    ("rest_density", "rest density, P/m²", Number(|row| row.fields.rest_density[row.i])),
+    ("pressure", "pressure, 1/s²", Number(|row| row.pressure())),
+    ("wall_gradient_x", "gradient of the kernel over the walls, 1/m", Number(|row| row.fields.wall_gradient[row.i].x)),
+    ("wall_gradient_y", "gradient of the kernel over the walls, 1/m", Number(|row| row.fields.wall_gradient[row.i].y)),
+    ("preferred_vel_x", "preferred velocity, m/s", Number(|row| row.fields.preferred_velocity[row.i].x)),
+    ("preferred_vel_y", "preferred velocity, m/s", Number(|row| row.fields.preferred_velocity[row.i].y)),
+    ("acc_x", "acceleration, m/s²", Number(|row| row.fields.acceleration[row.i].x)),
+    ("acc_y", "acceleration, m/s²", Number(|row| row.fields.acceleration[row.i].y)),
+    ("legs_x", "position of the legs, m", OfLegs(|row| Some(row.legs()?.x))),
+    ("legs_y", "position of the legs, m", OfLegs(|row| Some(row.legs()?.y))),
+    ("legs_vel_x", "velocity of the legs, m/s", OfLegs(|row| Some(row.legs_velocity()?.x))),
+    ("legs_vel_y", "velocity of the legs, m/s", OfLegs(|row| Some(row.legs_velocity()?.y))),
+    ("lean", "distance from the legs to the body, m", OfLegs(|row| row.lean())),
+];
 
 impl<'a> Row<'a> {
-    /// The name, the meaning with its unit, and the value of each field.
-    pub fn cells(&self) -> [(&'static str, &'static str, Cell<'a>); 32] {
-        use Cell::{Count, Name, Number};
-        let of_legs = |value: Option<f64>| Number(value.unwrap_or(f64::NAN));
-        [
-            (
-                "frame",
-                "number of the frame at the file's own rate",
-                Count(self.frame),
-            ),
-            ("time", "time, s", Number(self.time)),
-            (
-                "id",
-                "the agent, from 0 in the order of entry",
-                Count(self.id.into()),
-            ),
-            ("group", "name of the agent's group", Name(Some(self.group))),
-            (
-                "push",
-                "name of the push that the agent takes part in",
-                Name(self.push),
-            ),
-            ("pos_x", "position, m", Number(self.pos_x)),
-            ("pos_y", "position, m", Number(self.pos_y)),
-            ("vel_x", "velocity, m/s", Number(self.vel_x)),
-            ("vel_y", "velocity, m/s", Number(self.vel_y)),
-            ("speed", "speed, m/s", Number(self.speed)),
-            (
-                "ori_x",
-                "direction in which the agent faces, of length 1",
-                Number(self.ori_x),
-            ),
-            (
-                "ori_y",
-                "direction in which the agent faces, of length 1",
-                Number(self.ori_y),
-            ),
-            ("goal_x", "goal, m", Number(self.goal_x)),
-            ("goal_y", "goal, m", Number(self.goal_y)),
-            ("radius", "radius of the body, m", Number(self.radius)),
-            ("mass", "mass, 1 = an average person", Number(self.mass)),
-            ("density", "density, P/m²", Number(self.density)),
-            (
-                "density_from_walls",
-                "the walls' part of the density, P/m²",
-                Number(self.density_from_walls),
-            ),
-            (
-                "mean_density",
-                "mean density of the last seconds, P/m²",
-                Number(self.mean_density),
-            ),
-            (
-                "rest_density",
-                "rest density, P/m²",
-                Number(self.rest_density),
-            ),
-            ("pressure", "pressure, 1/s²", Number(self.pressure)),
-            (
-                "wall_gradient_x",
-                "gradient of the kernel over the walls, 1/m",
-                Number(self.wall_gradient_x),
-            ),
-            (
-                "wall_gradient_y",
-                "gradient of the kernel over the walls, 1/m",
-                Number(self.wall_gradient_y),
-            ),
-            (
-                "preferred_vel_x",
-                "preferred velocity, m/s",
-                Number(self.preferred_vel_x),
-            ),
-            (
-                "preferred_vel_y",
-                "preferred velocity, m/s",
-                Number(self.preferred_vel_y),
-            ),
-            ("acc_x", "acceleration, m/s²", Number(self.acc_x)),
-            ("acc_y", "acceleration, m/s²", Number(self.acc_y)),
-            ("legs_x", "position of the legs, m", of_legs(self.legs_x)),
-            ("legs_y", "position of the legs, m", of_legs(self.legs_y)),
-            (
-                "legs_vel_x",
-                "velocity of the legs, m/s",
-                of_legs(self.legs_vel_x),
-            ),
-            (
-                "legs_vel_y",
-                "velocity of the legs, m/s",
-                of_legs(self.legs_vel_y),
-            ),
-            (
-                "lean",
-                "distance from the legs to the body, m",
-                of_legs(self.lean),
-            ),
-        ]
+    /// Unique, from 0 in the order of entry.
+    pub fn id(&self) -> u32 {
+        id_of(self.agents, self.i)
+    }
+
+    fn group(&self) -> &'a Group {
+        &self.scene.groups[usize::from(self.agents.group[self.i])]
+    }
+
+    fn push(&self) -> Option<&'a str> {
+        let push = self.agents.push[self.i]?;
+        Some(&self.scene.pushes[usize::from(push)].name)
+    }
+
+    /// r_i, meters.
+    pub fn position(&self) -> Vector {
+        self.agents.position[self.i]
+    }
+
+    /// v_i, m/s.
+    fn velocity(&self) -> Vector {
+        self.agents.velocity[self.i]
+    }
+
+    /// |v_i|, m/s.
+    pub fn speed(&self) -> f64 {
+        self.velocity().norm()
+    }
+
+    /// The direction in which the agent faces: that of its velocity, that of its goal if it stands, the x direction if
+    /// it also stands at its goal.
+    pub fn orientation(&self) -> Vector {
+        let facing = match self.speed() < STANDING {
+            true => {
+                let goal = self.agents.goal[self.i];
+                let ahead = self.group().direction;
+                direction(ahead.unwrap_or(goal - self.position()))
+            }
+            false => direction(self.velocity()),
+        };
+        match facing == Vector::zeros() {
+            true => Vector::x(),
+            false => facing,
+        }
+    }
+
+    /// m_i, 1 = an average person.
+    pub fn mass(&self) -> f64 {
+        self.agents.mass[self.i]
+    }
+
+    /// ρ_i, P/m².
+    pub fn density(&self) -> f64 {
+        self.fields.density[self.i]
+    }
+
+    /// p_i, 1/s².
+    pub fn pressure(&self) -> f64 {
+        self.fields.pressure[self.i]
+    }
+
+    /// y_i, meters.
+    fn legs(&self) -> Option<&'a Vector> {
+        self.agents.legs.get(self.i)
+    }
+
+    /// w_i, m/s.
+    fn legs_velocity(&self) -> Option<&'a Vector> {
+        self.agents.legs_velocity.get(self.i)
+    }
+
+    /// |r_i − y_i|, meters.
+    fn lean(&self) -> Option<f64> {
+        self.legs().map(|_| self.agents.lean(self.i).norm())
+    }
+}
+
+impl Serialize for Row<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut record = serializer.serialize_struct("Row", COLUMNS.len())?;
+        for (name, _, value) in &COLUMNS {
+            match value {
+                Count(of) => record.serialize_field(name, &of(self))?,
+                Number(of) => record.serialize_field(name, &of(self))?,
+                Name(of) => record.serialize_field(name, &of(self))?,
+                OfLegs(of) => match of(self) {
+                    Some(value) => record.serialize_field(name, &value)?,
+                    None => record.skip_field(name)?,
+                },
+            }
+        }
+        record.end()
     }
 }
 
 /// All agents in an evaluated frame with the number `number`, by id.
 pub fn rows(simulation: &Simulation, number: u64) -> Vec<Row<'_>> {
-    let agents = simulation.frame().agents;
+    let Frame { agents, fields, .. } = simulation.frame();
     let mut order: Vec<usize> = agents.present().collect();
     order.sort_unstable_by_key(|&i| id_of(agents, i));
-    let row = |i| row(simulation, number, i);
-    order.into_par_iter().with_min_len(1024).map(row).collect()
-}
-
-fn row(simulation: &Simulation, number: u64, i: usize) -> Row<'_> {
-    let (frame, scene) = (simulation.frame(), simulation.scene());
-    let Frame { agents, fields, .. } = frame;
-    let (position, velocity, goal) = (agents.position[i], agents.velocity[i], agents.goal[i]);
-    let group = &scene.groups[usize::from(agents.group[i])];
-    let ahead = group.direction.unwrap_or(goal - position);
-    let orientation = orientation(velocity, ahead);
-    let wall_gradient = fields.wall_gradient[i];
-    let preferred_velocity = fields.preferred_velocity[i];
-    let acceleration = fields.acceleration[i];
-    let (legs, legs_velocity) = (agents.legs.get(i), agents.legs_velocity.get(i));
-    Row {
-        frame: number,
-        time: frame.clock.time(),
-        id: id_of(agents, i),
-        group: &group.name,
-        push: agents.push[i].map(|push| scene.pushes[usize::from(push)].name.as_str()),
-        pos_x: position.x,
-        pos_y: position.y,
-        vel_x: velocity.x,
-        vel_y: velocity.y,
-        speed: velocity.norm(),
-        ori_x: orientation.x,
-        ori_y: orientation.y,
-        goal_x: goal.x,
-        goal_y: goal.y,
-        radius: agents.radius[i],
-        mass: agents.mass[i],
-        density: fields.density[i],
-        density_from_walls: fields.density_from_walls[i],
-        mean_density: fields.mean_density[i],
-        rest_density: fields.rest_density[i],
-        pressure: fields.pressure[i],
-        wall_gradient_x: wall_gradient.x,
-        wall_gradient_y: wall_gradient.y,
-        preferred_vel_x: preferred_velocity.x,
-        preferred_vel_y: preferred_velocity.y,
-        acc_x: acceleration.x,
-        acc_y: acceleration.y,
-        legs_x: legs.map(|legs| legs.x),
-        legs_y: legs.map(|legs| legs.y),
-        legs_vel_x: legs_velocity.map(|velocity| velocity.x),
-        legs_vel_y: legs_velocity.map(|velocity| velocity.y),
-        lean: legs.map(|_| agents.lean(i).norm()),
-    }
+    let row = |i| Row {
+        number,
+        time: simulation.frame().clock.time(),
+        agents,
+        fields,
+        scene: simulation.scene(),
+        i,
+    };
+    order.into_iter().map(row).collect()
 }
 
 /// The id of an agent, or of its current lap. Programs that read trajectories compute speeds from positions: with one
@@ -263,16 +198,4 @@ fn id_of(agents: &Agents, i: usize) -> u32 {
     let number = laps.unsigned_abs().wrapping_mul(2).wrapping_sub(back);
     let first = agents.entered().wrapping_mul(number);
     first.wrapping_add(agents.id[i])
-}
-
-/// The direction in which an agent faces: `ahead` if it stands, the x direction if it also stands at its goal.
-fn orientation(velocity: Vector, ahead: Vector) -> Vector {
-    let facing = match velocity.norm() < STANDING {
-        true => direction(ahead),
-        false => direction(velocity),
-    };
-    match facing == Vector::zeros() {
-        true => Vector::x(),
-        false => facing,
-    }
 }

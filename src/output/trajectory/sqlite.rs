@@ -84,13 +84,14 @@ impl Sqlite {
     }
 
     fn insert(&self, frame: u64, rows: &[Row<'_>]) -> rusqlite::Result<()> {
-        let insert = "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
-        let mut insert = self.connection.prepare(insert)?;
+        let into_rows = "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+        let mut insert = self.connection.prepare(into_rows)?;
         let frame = frame.cast_signed();
         for row in rows {
-            let place = [row.pos_x, row.pos_y, row.ori_x, row.ori_y];
-            let values = [row.density, row.pressure, row.speed, row.mass];
-            let ids: [&dyn ToSql; 2] = [&frame, &row.id];
+            let (at, facing) = (row.position(), row.orientation());
+            let place = [at.x, at.y, facing.x, facing.y];
+            let values = [row.density(), row.pressure(), row.speed(), row.mass()];
+            let ids: [&dyn ToSql; 2] = [&frame, &row.id()];
             let numbers = place.iter().chain(&values).map(|x| x as &dyn ToSql);
             insert.execute(params_from_iter(ids.into_iter().chain(numbers)))?;
         }

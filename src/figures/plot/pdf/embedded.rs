@@ -16,8 +16,8 @@ const BASE_FONT: Name = Name(b"SANDBX+DejaVuSans");
 impl Pdf {
     /// Embeds the glyphs that are used, with their widths and letters, so that text can be searched and copied.
     pub(super) fn write_font(&self, pdf: &mut pdf_writer::Pdf) -> Result<(), String> {
-        let part = subsetter::subset(dejavu::sans::regular(), 0, &self.remapper);
-        let part = part.map_err(|error| format!("cannot embed the font: {error}"))?;
+        let cut = subsetter::subset(dejavu::sans::regular(), 0, &self.remapper);
+        let part = cut.map_err(|error| format!("cannot embed the font: {error}"))?;
         let info = SystemInfo {
             registry: Str(b"Adobe"),
             ordering: Str(b"Identity"),

@@ -234,8 +234,8 @@ pub fn ways(simulation: &Simulation) -> Result<Work, &'static str> {
         let frame = simulation.frame();
         let mut agents = frame.agents.clone();
         held.resize(agents.entered() as usize, (None, Vector::zeros()));
-        let routes = agents.id.iter().map(|&id| held[id as usize]);
-        (agents.route, agents.aim) = routes.unzip();
+        let by_agent = agents.id.iter().map(|&id| held[id as usize]);
+        (agents.route, agents.aim) = by_agent.unzip();
         agents.lacks_routes = agents.route.contains(&None);
         let spent = seconds(|| agents.follow(&ways, frame.clock.is_coarse(), seed));
         let routes = agents.route.into_iter().zip(agents.aim);

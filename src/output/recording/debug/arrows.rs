@@ -66,8 +66,8 @@ pub type Force = (String, Vector, Rgb);
 /// The sum of the forces on an agent, and the forces that are not zero.
 pub fn forces(agent: &Open, terms: &[Term]) -> Vec<Force> {
     let of_term = |&term: &Term| (in_words(term), agent.force(term), color(term).1);
-    let own = agent.breakdown.own_forces.iter();
-    let own = own.map(|force| (force.name.clone(), force.acceleration.into(), OWN));
+    let forces = agent.breakdown.own_forces.iter();
+    let own = forces.map(|force| (force.name.clone(), force.acceleration.into(), OWN));
     let total = (
         "total".to_owned(),
         agent.breakdown.acceleration.into(),

@@ -70,10 +70,10 @@ impl Focus {
     pub fn begin(stream: &RecordingStream, name: String, terms: &[Term]) -> Result<Self, Cause> {
         let here = format!("{}/here", entity(&name));
         stream.log_static(here.as_str(), &y_up())?;
-        let names = terms.iter().map(|&term| arrows::in_words(term));
+        let words = terms.iter().map(|&term| arrows::in_words(term));
         let colors = terms.iter().map(|&term| arrows::color(term).1);
         let series = SeriesLines::new()
-            .with_names(["total".to_owned()].into_iter().chain(names))
+            .with_names(["total".to_owned()].into_iter().chain(words))
             .with_colors([TOTAL].into_iter().chain(colors).map(color))
             .with_widths(vec![1.5; terms.len() + 1]);
         let style = Arrows2D::update_fields().with_draw_order(21.0);
@@ -81,16 +81,16 @@ impl Focus {
             .with_radii(px(0.0))
             .with_show_labels(true)
             .with_draw_order(22.0);
-        let parts: [&dyn AsComponents; 3] = [&style, &names, &series];
-        stream.log_static(forces(&name), &parts)?;
+        let static_parts: [&dyn AsComponents; 3] = [&style, &names, &series];
+        stream.log_static(forces(&name), &static_parts)?;
         let lines = LineStrips2D::update_fields()
             .with_radii(px(0.8))
             .with_draw_order(18.0);
         let points = Points2D::update_fields()
             .with_radii(px(3.0))
             .with_draw_order(19.0);
-        let parts: [&dyn AsComponents; 2] = [&lines, &points];
-        stream.log_static(format!("{here}/walls"), &parts)?;
+        let wall_parts: [&dyn AsComponents; 2] = [&lines, &points];
+        stream.log_static(format!("{here}/walls"), &wall_parts)?;
         let body = Points2D::update_fields()
             .with_colors([color(AGENT)])
             .with_draw_order(20.0);

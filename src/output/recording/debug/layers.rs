@@ -67,21 +67,21 @@ pub fn begin(
         });
         Ok(())
     };
-    let style = point_style(WHITE, 1.5).with_show_labels(true);
-    add("agents", &style, Box::new(labels))?;
-    let style = Ellipses2D::update_fields()
+    let labeled = point_style(WHITE, 1.5).with_show_labels(true);
+    add("agents", &labeled, Box::new(labels))?;
+    let ellipses = Ellipses2D::update_fields()
         .with_line_radii(px(0.6))
         .with_colors([color([150, 160, 220])])
         .with_draw_order(10.0);
-    add("kernels", &style, Box::new(kernels))?;
+    add("kernels", &ellipses, Box::new(kernels))?;
     let walls = !scene.walls.is_empty();
     if walls {
-        let style = line_style(HIDDEN, 0.8);
-        add("walls/hidden_regions", &style, Box::new(hidden_regions))?;
-        let style = line_style(LINK, 0.4);
-        add("walls/links", &style, Box::new(links))?;
-        let style = point_style(NEAREST, 3.0);
-        add("walls/nearest_points", &style, Box::new(nearest_points))?;
+        let hidden = line_style(HIDDEN, 0.8);
+        add("walls/hidden_regions", &hidden, Box::new(hidden_regions))?;
+        let linking = line_style(LINK, 0.4);
+        add("walls/links", &linking, Box::new(links))?;
+        let nearest = point_style(NEAREST, 3.0);
+        add("walls/nearest_points", &nearest, Box::new(nearest_points))?;
     }
     if walls && scene.wall_method == WallMethod::Representative {
         let (name, style) = (
@@ -129,8 +129,8 @@ fn positions(open: &[Open]) -> impl Iterator<Item = Point> {
 }
 
 fn labels(open: &[Open]) -> Data {
-    let labels = open.iter().filter(|_| open.len() <= MOST_LABELS);
-    let labels = labels.map(|agent| agent.breakdown.id.to_string());
+    let few = open.iter().filter(|_| open.len() <= MOST_LABELS);
+    let labels = few.map(|agent| agent.breakdown.id.to_string());
     let points = Points2D::update_fields().with_positions(positions(open));
     (Box::new(points.with_labels(labels)), open.len())
 }
@@ -150,8 +150,8 @@ fn hidden_regions(open: &[Open]) -> Data {
 /// The rest of each agent's way, over its corners to its end.
 fn ways(open: &[Open]) -> Data {
     let ways = open.iter().filter_map(|agent| {
-        let corners = agent.breakdown.way.as_ref()?.corners.iter();
-        let corners = corners.map(|&corner| xy(corner.into()));
+        let aims = agent.breakdown.way.as_ref()?.corners.iter();
+        let corners = aims.map(|&corner| xy(corner.into()));
         Some(std::iter::once(xy(agent.position)).chain(corners).collect())
     });
     strips(ways)
@@ -193,9 +193,9 @@ fn strips(strips: impl Iterator<Item = Vec<Point>>) -> Data {
 }
 
 fn dots(points: impl Iterator<Item = Point>) -> Data {
-    let points: Vec<_> = points.collect();
-    let count = points.len();
-    let points = Points2D::update_fields().with_positions(points);
+    let places: Vec<_> = points.collect();
+    let count = places.len();
+    let points = Points2D::update_fields().with_positions(places);
     (Box::new(points), count)
 }
 

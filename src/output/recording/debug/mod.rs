@@ -55,27 +55,26 @@ impl DebugAgents {
     ) -> Vec<Open> {
         let agents = simulation.frame().agents;
         let also = also.iter().flatten();
-        let mut chosen: Vec<usize> = match self {
+        let mut candidates: Vec<usize> = match self {
             Self::None => Vec::new(),
             // A search for each is faster than a test of every agent.
             Self::Ids(ids) => ids.iter().filter_map(|&id| agents.index_of(id)).collect(),
-            Self::Region(_) | Self::All => {
-                let own = (0..agents.len()).filter(|&i| self.includes(simulation, i));
-                own.chain(also.filter_map(|&id| agents.index_of(id)))
-                    .collect()
-            }
+            Self::Region(_) | Self::All => (0..agents.len())
+                .filter(|&i| self.includes(simulation, i))
+                .chain(also.filter_map(|&id| agents.index_of(id)))
+                .collect(),
         };
-        chosen.sort_unstable_by_key(|&i| agents.id[i]);
-        chosen.dedup();
-        let chosen = chosen.into_iter();
+        candidates.sort_unstable_by_key(|&i| agents.id[i]);
+        candidates.dedup();
+        let chosen = candidates.into_iter();
         chosen.filter_map(|i| Open::of(simulation, i)).collect()
     }
 }
 
 /// The names and colors of the accelerations that act in a scene, their sum first.
 pub fn force_terms(scene: &Scene) -> Vec<(String, Rgb)> {
-    let terms = arrows::acting(scene).into_iter();
-    let terms = terms.map(|term| (arrows::in_words(term), arrows::color(term).1));
+    let acting = arrows::acting(scene).into_iter();
+    let terms = acting.map(|term| (arrows::in_words(term), arrows::color(term).1));
     let total = ("total".to_owned(), arrows::TOTAL);
     std::iter::once(total).chain(terms).collect()
 }

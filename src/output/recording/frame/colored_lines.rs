@@ -86,8 +86,8 @@ pub fn leans(simulation: &Simulation) -> Option<Vec<Part>> {
 /// The openings before which agents wait; `None` if they do not choose ways by time.
 pub fn waits(simulation: &Simulation) -> Option<Vec<Part>> {
     let rooms = simulation.scene().rooms()?;
-    let waits = rooms.openings().iter().zip(simulation.waits());
-    let waits = waits.filter(|(_, wait)| *wait > 0.0);
+    let all = rooms.openings().iter().zip(simulation.waits());
+    let waits = all.filter(|(_, wait)| *wait > 0.0);
     let parts = waits.flat_map(|(opening, wait)| {
         let pieces = opening.pieces().iter();
         pieces.map(move |ends| (ends.map(xy), wait as f32))

@@ -72,8 +72,8 @@ impl Crowd {
         self.log_bodies(stream, snapshot, &rows)?;
         let positions = rows.iter().map(|&i| snapshot.positions[i]);
         let mut points = Points2D::update_fields().with_positions(positions);
-        let speeds = snapshot.velocities.iter().map(|[x, y]| x.hypot(*y));
-        let speeds: Vec<f32> = speeds.collect();
+        let norms = snapshot.velocities.iter().map(|[x, y]| x.hypot(*y));
+        let speeds: Vec<f32> = norms.collect();
         let speed_colors = rows.iter().map(|&i| of(&self.maps.speed, speeds[i]));
         let mut values = DynamicArchetype::new(ARCHETYPE)
             .with_component::<Color>("speed_colors", speed_colors)
@@ -105,14 +105,14 @@ impl Crowd {
         snapshot: &Snapshot,
         rows: &[usize],
     ) -> Result<(), Cause> {
-        let ids: Vec<u32> = rows.iter().map(|&i| snapshot.ids[i]).collect();
-        if ids == self.logged_ids {
+        let shown: Vec<u32> = rows.iter().map(|&i| snapshot.ids[i]).collect();
+        if shown == self.logged_ids {
             return Ok(());
         }
         let radii = rows.iter().map(|&i| snapshot.radii[i]);
         let points = Points2D::update_fields().with_radii(radii.map(Radius::new_scene_units));
-        self.logged_ids.clone_from(&ids);
-        let ids = Arc::new(UInt32Array::from(ids));
+        self.logged_ids.clone_from(&shown);
+        let ids = Arc::new(UInt32Array::from(shown));
         let values = DynamicArchetype::new(ARCHETYPE).with_component_from_data("id", ids);
         stream.log(ENTITY, &[&points as &dyn AsComponents, &values])?;
         Ok(())

@@ -68,8 +68,8 @@ impl Snapshot {
         let number = |values: &[f64], i: usize| values.get(i).map(|&x| x as f32);
         let numbers = |values: &[f64]| present.iter().filter_map(|&i| number(values, i)).collect();
         let trips = &agents.trip;
-        let stages = present.iter().copied().filter(|_| !trips.is_empty());
-        let stages = stages.map(|i| stage_color(trips.get(i).and_then(Option::as_ref)));
+        let on_trips = present.iter().copied().filter(|_| !trips.is_empty());
+        let stages = on_trips.map(|i| stage_color(trips.get(i).and_then(Option::as_ref)));
         let open = debug.open(simulation, followed);
         let place = |id: u32| {
             open.binary_search_by_key(&id, |agent| agent.breakdown.id)

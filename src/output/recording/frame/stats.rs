@@ -70,8 +70,7 @@ pub fn log(stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
     let energies = squares().zip(&snapshot.masses);
     let known = squares().filter(|square| square.is_finite());
     let speeds: Vec<f64> = known.map(f64::sqrt).collect();
-    let densities = snapshot.densities.iter().copied().map(f64::from);
-    let densities: Vec<f64> = densities.collect();
+    let densities: Vec<f64> = snapshot.densities.iter().copied().map(f64::from).collect();
     let energy = || energies.map(|(v2, &m)| 0.5 * f64::from(m) * v2).sum();
     let values = [
         Some(snapshot.ids.len() as f64),

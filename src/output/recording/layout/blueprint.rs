@@ -20,11 +20,11 @@ pub fn send(
     let (memory, storage) = RecordingStreamBuilder::new(application(options)?)
         .send_properties(false)
         .memory()?;
-    let activation = BlueprintActivation {
+    let flags = BlueprintActivation {
         make_active: true,
         make_default: true,
     };
-    blueprint.send(&memory, activation)?;
+    blueprint.send(&memory, flags)?;
     let own = |message: &LogMsg| {
         message.store_id().kind() == StoreKind::Blueprint
             && !matches!(message, LogMsg::BlueprintActivationCommand(_))

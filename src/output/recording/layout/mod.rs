@@ -126,12 +126,12 @@ fn crowds(
 ) -> ContainerLike {
     let shown = bars::with_bar(&options.view);
     let range = |[first, last]: [f64; 2]| format!("{}–{}", brief(first), brief(last));
-    let density = format!("Density {} P/m²", range(options.density_range));
-    let density = View::of_crowd(&density, content)
+    let density_title = format!("Density {} P/m²", range(options.density_range));
+    let density = View::of_crowd(&density_title, content)
         .with(bars::DENSITY)
         .add(properties, &shown);
-    let speed = format!("Speed {} m/s", range(options.speed_range));
-    let speed = View::of_crowd(&speed, content)
+    let speed_title = format!("Speed {} m/s", range(options.speed_range));
+    let speed = View::of_crowd(&speed_title, content)
         .with(bars::SPEED)
         .colored_by(crowd::SPEED_COLORS)
         .add(properties, &shown);
@@ -172,10 +172,10 @@ fn followed(
             .following(&focus::entity(name))
             .dimmed()
             .add(properties, &focus::region());
-        let both = Horizontal::new([view, beside(name)]);
+        let halves = Horizontal::new([view, beside(name)]);
         let both = match content.kind {
-            Kind::Moment => both.with_column_shares([5.0, 4.0]),
-            _ => both,
+            Kind::Moment => halves.with_column_shares([5.0, 4.0]),
+            _ => halves,
         };
         both.with_name(tab).into()
     };
@@ -260,7 +260,7 @@ fn plots(content: &Content) -> ContainerLike {
     }
     let energy = plot("Kinetic energy", "/stats/energy");
     let crowd = stack("Agents and energy", [agents, energy]);
-    let places = || {
+    let of_places = || {
         let of = |what: &str| format!("/stats/places/{what}");
         let present = (content.has_waiting)
             .then(|| plot("Agents in queues and waiting areas", &of(stats::PRESENT)));
@@ -268,10 +268,10 @@ fn plots(content: &Content) -> ContainerLike {
         let plots = present.into_iter().chain([passed]);
         Vertical::new(plots).with_name("Places").into()
     };
-    let places = content.has_journeys.then(places);
+    let places = content.has_journeys.then(of_places);
     let time = plot("Computing time", "/stats/time");
-    let lines = content.lines.iter();
-    let lines = lines.map(|of| plot(of.title, &format!("/{}", of.series)));
+    let charts = content.lines.iter();
+    let lines = charts.map(|of| plot(of.title, &format!("/{}", of.series)));
     let first = places.into_iter().chain(lines);
     Tabs::new(first.chain([motion, crowd, time])).into()
 }

@@ -81,13 +81,13 @@ impl<'a> View<'a> {
 
     /// The view, showing this part of the plane, as y up and relative to its origin.
     pub fn add(self, properties: &mut Vec<Property>, shown: &Region) -> ContainerLike {
-        let mut view = Spatial2DView::new(self.name)
+        let mut plane = Spatial2DView::new(self.name)
             .with_origin(self.origin)
             .with_contents(self.contents);
         if let Some(crowd) = self.crowd {
-            view = view.with_overrides(crowd::ENTITY, [crowd]);
+            plane = plane.with_overrides(crowd::ENTITY, [crowd]);
         }
-        let view = ContainerLike::from(view);
+        let view = ContainerLike::from(plane);
         let ContainerLike::View(own) = &view else {
             return view;
         };

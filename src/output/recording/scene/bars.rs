@@ -67,7 +67,7 @@ fn log_bar(
         let part = (f64::from(k) + 0.5) / f64::from(BANDS);
         map.color((first + (last - first) * part) as f32)
     });
-    let image = Image::from_rgb24(colors.collect::<Vec<u8>>(), [1, BANDS.into()]);
+    let pixels = Image::from_rgb24(colors.collect::<Vec<u8>>(), [1, BANDS.into()]);
     let place = Transform3D::from_translation_scale(
         [left as f32, low as f32, 0.0],
         [
@@ -76,16 +76,16 @@ fn log_bar(
             1.0,
         ],
     );
-    let image = image.with_draw_order(30.0);
-    let parts: [&dyn AsComponents; 2] = [&place, &image];
-    stream.log_static(format!("{entity}/colors"), &parts)?;
-    let numbers = round::ticks([first, last], MOST_STEPS);
+    let image = pixels.with_draw_order(30.0);
+    let plane: [&dyn AsComponents; 2] = [&place, &image];
+    stream.log_static(format!("{entity}/colors"), &plane)?;
+    let steps = round::ticks([first, last], MOST_STEPS);
     let at = |value: f64| low + height * (value - first) / (last - first);
-    let ticks = numbers.iter().map(|&value| {
+    let strokes = steps.iter().map(|&value| {
         let y = at(value) as f32;
         [[right as f32, y], [(right + TICK * side) as f32, y]]
     });
-    let ticks = LineStrips2D::new(ticks)
+    let ticks = LineStrips2D::new(strokes)
         .with_colors([color(TEXT)])
         .with_radii(px(0.6))
         .with_draw_order(30.0);
@@ -93,8 +93,8 @@ fn log_bar(
     let top = (low + height + UNIT * side).min(view.max.y);
     let above = [0.5 * (left + right), top].map(|x| x as f32);
     let beside = |&value: &f64| [middle, (at(value) + RAISED * side) as f32];
-    let places = numbers.iter().map(beside).chain([above]);
-    let numbers = numbers.iter().map(|&value| round::text(value));
+    let places = steps.iter().map(beside).chain([above]);
+    let numbers = steps.iter().map(|&value| round::text(value));
     let texts = texts(places, numbers.chain([unit.to_owned()]))
         .with_colors([color(TEXT)])
         .with_draw_order(31.0);

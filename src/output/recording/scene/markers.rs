@@ -43,18 +43,18 @@ impl Marked<'_> {
         stream: &RecordingStream,
         names: &mut Names,
     ) -> Result<(), Cause> {
-        let regions = self.regions.iter().map(|region| closed(&region.corners()));
-        let regions = (1..).zip(regions);
-        let regions = regions.map(|(k, outline)| (format!("region {k}"), outline));
+        let outlines = self.regions.iter().map(|region| closed(&region.corners()));
+        let numbered = (1..).zip(outlines);
+        let regions = numbered.map(|(k, outline)| (format!("region {k}"), outline));
         log_named(
             (stream, names),
             "measured_regions",
             REGION,
             regions.collect(),
         )?;
-        let lines = self.lines.iter().map(|line| vec![line.start, line.end]);
+        let paths = self.lines.iter().map(|line| vec![line.start, line.end]);
         let lines = (1..)
-            .zip(lines)
+            .zip(paths)
             .map(|(k, line)| (format!("line {k}"), line));
         log_named((stream, names), "measured_lines", LINE, lines.collect())
     }
@@ -74,8 +74,8 @@ pub fn log(
         (named("source", &source.name), outline)
     });
     log_named((stream, names), "sources", SOURCE, sources.collect())?;
-    let pushes = scene.pushes.iter();
-    let pushes = pushes.map(|push| (named("push", &push.name), closed(&push.region.corners())));
+    let all = scene.pushes.iter();
+    let pushes = all.map(|push| (named("push", &push.name), closed(&push.region.corners())));
     log_named((stream, names), "pushes", PUSH, pushes.collect())?;
     // Texts lie in their rooms; names of measurements find other places.
     let observed = options.measured.iter().map(|(name, _)| name.as_str());

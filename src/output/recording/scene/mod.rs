@@ -56,8 +56,8 @@ fn log_period(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Resul
     let Some(period) = &scene.period else {
         return Ok(());
     };
-    let corners = scene.walls.iter().map(|wall| wall.start);
-    let corners = bounds(corners.chain(agents.position.iter().copied())).unwrap_or_default();
+    let starts = scene.walls.iter().map(|wall| wall.start);
+    let corners = bounds(starts.chain(agents.position.iter().copied())).unwrap_or_default();
     let [min, max] = period.clipped(corners);
     let [a, b, c, d] = Region { min, max }.corners();
     let ends = match period.axis {

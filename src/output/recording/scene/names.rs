@@ -121,8 +121,8 @@ impl Names {
             let far = || own.iter().filter(|label| label.leader.is_some());
             // To a place inside of the label: it keeps its size when the viewer zooms in.
             let end = |label: &Placed| label.at + (middle(label) - label.at) * INTO;
-            let lines = far().filter_map(|label| Some([xy(label.leader?), xy(end(label))]));
-            let lines = LineStrips2D::new(lines)
+            let leaders = far().filter_map(|label| Some([xy(label.leader?), xy(end(label))]));
+            let lines = LineStrips2D::new(leaders)
                 .with_colors(far().map(of))
                 .with_radii(px(0.4))
                 .with_draw_order(7.0);

@@ -34,8 +34,8 @@ pub fn log(stream: &RecordingStream, scene: &Scene, names: &mut Names) -> Result
     let mut kinds: BTreeMap<&str, (f32, Rgb, Vec<Vec<Vector>>)> = BTreeMap::new();
     for place in &scene.journeys.places {
         let (entity, width) = entity(&place.kind);
-        let own = kinds.entry(entity);
-        let own = own.or_insert((width, scenery::color(&place.kind), Vec::new()));
+        let entry = kinds.entry(entity);
+        let own = entry.or_insert((width, scenery::color(&place.kind), Vec::new()));
         own.2.push(scenery::lines(place));
     }
     for (entity, (width, color, lines)) in kinds {
@@ -45,8 +45,8 @@ pub fn log(stream: &RecordingStream, scene: &Scene, names: &mut Names) -> Result
     log_lines(stream, "entrances", (ENTRANCE, 2.0, 4.0), entrances)?;
     log_spots(stream, scene)?;
     let zones = scene.journeys.zones.iter().flat_map(|zone| {
-        let hatching = scenery::hatching(&zone.area, HATCHING);
-        let hatching = hatching.into_iter().map(|line| line.to_vec());
+        let lines = scenery::hatching(&zone.area, HATCHING);
+        let hatching = lines.into_iter().map(|line| line.to_vec());
         std::iter::once(scenery::closed(zone.area.points())).chain(hatching)
     });
     let dark = scenery::ZONE.map(|x| x / 2);

@@ -45,8 +45,8 @@ pub fn log(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
     let Some(ways) = &scene.ways else {
         return Ok(());
     };
-    let corners = ways.floor.mesh.triangles().iter().flat_map(|t| t.corners);
-    let corners = corners.map(|k| ways.floor.mesh.point(k));
+    let numbers = ways.floor.mesh.triangles().iter().flat_map(|t| t.corners);
+    let corners = numbers.map(|k| ways.floor.mesh.point(k));
     let [low, high] = bounds(corners).unwrap_or_default();
     let grid = Grid::over([low, high], PIXEL.max((high - low).max() / SIDE));
     for (entity, to) in destinations(scene) {
@@ -72,13 +72,12 @@ fn log_field(stream: &RecordingStream, entity: EntityPath, field: &WayField) -> 
         (band as u8 + 1, name, Rgba32::from_rgb(r, g, b))
     };
     let purple = Rgba32::from_rgb(120, 60, 130);
-    let others = [
+    let classes: Vec<Class> = [
         (0, "no way".to_owned(), Rgba32::TRANSPARENT),
         (border, "another next corner".to_owned(), purple),
-    ];
-    let classes: Vec<Class> = others
-        .into_iter()
-        .chain((0..bands.count).map(of_band))
-        .collect();
+    ]
+    .into_iter()
+    .chain((0..bands.count).map(of_band))
+    .collect();
     log_classes(stream, entity, (&field.grid, pixels), &classes, -4.0)
 }

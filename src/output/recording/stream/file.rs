@@ -41,8 +41,8 @@ impl FileSink {
     /// Creates the file at `path`, replacing an existing one.
     pub fn create(path: &Path) -> io::Result<Self> {
         let (version, options) = (CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED);
-        let encoder = Encoder::new_eager(version, options, File::create(path)?);
-        let encoder = encoder.map_err(|error| io::Error::other(cause(&error)))?;
+        let begun = Encoder::new_eager(version, options, File::create(path)?);
+        let encoder = begun.map_err(|error| io::Error::other(cause(&error)))?;
         let (commands, queue) = sync_channel(QUEUE);
         let failure = Failure::default();
         let seen = failure.clone();

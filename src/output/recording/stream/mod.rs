@@ -68,11 +68,11 @@ impl Output {
     /// its own.
     pub fn open(to: &Destination, options: &RecordingOptions) -> Result<Self, RecordingError> {
         check_enabled()?;
-        let sink = to.viewer.as_ref();
-        let sink = sink.map(|viewer| viewer.connect(&to.interrupted));
-        let sink = sink.transpose()?;
-        let viewer = sink.as_ref();
-        let viewer = viewer.map(|sink| (sink.address.clone(), Arc::clone(&sink.failure)));
+        let wanted = to.viewer.as_ref();
+        let connected = wanted.map(|viewer| viewer.connect(&to.interrupted));
+        let sink = connected.transpose()?;
+        let live = sink.as_ref();
+        let viewer = live.map(|sink| (sink.address.clone(), Arc::clone(&sink.failure)));
         let is_live = viewer.is_some();
         let mut file_failure = Failure::default();
         let open = || -> Result<RecordingStream, Cause> {
@@ -90,13 +90,12 @@ impl Output {
                 flush_tick: if is_live { VIEWER_TICK } else { FILE_TICK },
                 ..ChunkBatcherConfig::DEFAULT
             };
-            let builder = RecordingStreamBuilder::new(application(options)?);
-            let builder = builder.batcher_config(batches);
+            let plain = RecordingStreamBuilder::new(application(options)?).batcher_config(batches);
             // In a live viewer, a second run with the same id would become part of the first.
             let builder = if is_live {
-                builder
+                plain
             } else {
-                builder.recording_id(options.id.as_str())
+                plain.recording_id(options.id.as_str())
             };
             let stream = builder.set_sinks(sinks)?;
             stream.set_log_tick_enabled(false);

@@ -101,8 +101,8 @@ fn spawn() -> Result<Address, RecordingError> {
             "no program `rerun` was found; `pip install rerun-sdk==0.36.3` brings it".to_owned()
         }
     };
-    let viewer = rerun::spawn(&spawn_options());
-    let viewer = viewer.map_err(|error| RecordingError::NotSpawned(reason(error)))?;
+    let spawned = rerun::spawn(&spawn_options());
+    let viewer = spawned.map_err(|error| RecordingError::NotSpawned(reason(error)))?;
     let address = format!("127.0.0.1:{}", viewer.port).parse();
     address.map_err(|error: AddressError| RecordingError::NotSpawned(error.to_string()))
 }
