@@ -86,7 +86,7 @@ fn color_differences_are_those_of_the_definition() {
 
 #[test]
 fn every_two_colors_of_forces_differ_by_20_for_normal_and_for_color_blind_vision() {
-    assert_eq!(TERMS.len(), Term::all().count());
+    assert!(TERMS.len() >= Term::ALL.len() + 3);
     let colors = TERMS.iter().map(|&(name, color)| (name, color));
     let all: Vec<_> = colors.chain([("white", [255; 3])]).collect();
     for (vision, matrix) in &VISIONS {

@@ -175,7 +175,7 @@ impl Native {
     fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         check_process()?;
         let simulation = &self.run.simulation;
-        let mut columns = Columns::new(|_| true);
+        let mut columns = Columns::new(simulation.scene(), |_| true);
         py.detach(|| columns.add(simulation, simulation.frame().clock.frame()));
         dictionary(py, columns)
     }
@@ -240,7 +240,7 @@ impl Native {
         }
         let mut run = Run::new(scenario).map_err(error)?;
         let collected = columns.map(|(fps, names)| {
-            let columns = Columns::new(|name| names.contains(&name));
+            let columns = Columns::new(run.simulation.scene(), |name| names.contains(&name));
             let view = run.scenario.view.region;
             let collected = Collected::new(&mut run.simulation, view, fps, columns);
             collected.map_err(|reason| error(format!("fps: {reason}")))

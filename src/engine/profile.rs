@@ -179,10 +179,8 @@ impl Profile {
             }
         }
         for force in &self.forces {
-            let named = force.terms(frame, i).into_iter();
-            terms
-                .own
-                .extend(named.map(|(name, value)| (name.to_owned(), value)));
+            let names = force.term_names().into_iter().map(str::to_owned);
+            terms.own.extend(names.zip(force.terms(frame, i)));
         }
         terms
     }

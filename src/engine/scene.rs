@@ -262,6 +262,17 @@ impl Scene {
         of_profiles.chain(&self.own_forces).map(AsRef::as_ref)
     }
 
+    /// Of these forces, one of each name that keeps a state for agents: in the order of [`Agents::states`].
+    pub fn keeping_forces(&self) -> Vec<&dyn Force> {
+        let mut keeping: Vec<&dyn Force> = Vec::new();
+        for force in self.all_forces().filter(|force| !force.kept().is_empty()) {
+            if keeping.iter().all(|known| known.name() != force.name()) {
+                keeping.push(force);
+            }
+        }
+        keeping
+    }
+
     /// The speed at which agent `i` wants to walk at `time` seconds, m/s.
     pub fn pace(&self, agents: &Agents, i: usize, time: f64) -> f64 {
         if agents.walks_from.get(i).is_some_and(|&from| time < from) {

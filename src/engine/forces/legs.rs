@@ -174,7 +174,7 @@ impl Legs {
     }
 
     /// The repulsion by other agents, m/s².
-    fn from_agents(&self, frame: &Frame, i: usize, half: Half) -> Vector {
+    fn repulsion_by_agents(&self, frame: &Frame, i: usize, half: Half) -> Vector {
         let agents = frame.agents;
         let lean = |k: usize| match half {
             Half::Body => Vector::zeros(),
@@ -187,7 +187,7 @@ impl Legs {
     }
 
     /// The repulsion by walls, m/s². Walls act on legs if they are near the body.
-    fn from_walls(&self, frame: &Frame, i: usize, half: Half) -> Vector {
+    fn repulsion_by_walls(&self, frame: &Frame, i: usize, half: Half) -> Vector {
         let (agents, walls) = (frame.agents, frame.walls);
         let body = agents.position[i];
         let mut sum = Vector::zeros();
@@ -217,8 +217,8 @@ impl Legs {
         if self.legs_strength == 0.0 {
             return [balance, Vector::zeros(), Vector::zeros()];
         }
-        let [agents, walls] =
-            [Self::from_agents, Self::from_walls].map(|from| from(self, frame, i, half));
+        let agents = self.repulsion_by_agents(frame, i, half);
+        let walls = self.repulsion_by_walls(frame, i, half);
         [balance, agents, walls]
     }
 }
@@ -251,11 +251,12 @@ impl Force for Legs {
         self.accelerations(frame, i, Half::Body).iter().sum()
     }
 
-    fn terms(&self, frame: &Frame, i: usize) -> Vec<(&str, Vector)> {
-        let names = ["balance", "body_agents", "body_walls"].into_iter();
-        let terms = names.zip(self.accelerations(frame, i, Half::Body));
-        let count = if self.legs_strength == 0.0 { 1 } else { 3 };
-        terms.take(count).collect()
+    fn term_names(&self) -> Vec<&str> {
+        vec!["balance", "body_agents", "body_walls"]
+    }
+
+    fn terms(&self, frame: &Frame, i: usize) -> Vec<Vector> {
+        self.accelerations(frame, i, Half::Body).to_vec()
     }
 
     fn kept(&self) -> &[Kept] {

@@ -43,9 +43,14 @@ pub trait Force: Any + Debug + Send + Sync {
     /// that the results do not depend on the number of threads. Accelerations of the frame are not computed yet.
     fn acceleration(&self, frame: &Frame, i: usize) -> Vector;
 
-    /// The parts of the acceleration with their names, for breakdowns, m/s². Their sum is the acceleration.
-    fn terms(&self, frame: &Frame, i: usize) -> Vec<(&str, Vector)> {
-        vec![(self.name(), self.acceleration(frame, i))]
+    /// The names of the parts of the acceleration.
+    fn term_names(&self) -> Vec<&str> {
+        vec![self.name()]
+    }
+
+    /// These parts, in breakdowns and recordings, m/s². Their sum is the acceleration.
+    fn terms(&self, frame: &Frame, i: usize) -> Vec<Vector> {
+        vec![self.acceleration(frame, i)]
     }
 
     /// The numbers that the force keeps for each agent; none by default.

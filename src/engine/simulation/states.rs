@@ -24,18 +24,11 @@ impl Fixed {
 
     /// No states yet, of all forces that keep one.
     pub(super) fn no_states(&self) -> Vec<States> {
-        let mut all: Vec<States> = Vec::new();
-        for force in self
-            .scene
-            .all_forces()
-            .filter(|force| !force.kept().is_empty())
-        {
-            if all.iter().all(|states| states.force != force.name()) {
-                let along = force.kept().iter().map(|kept| kept.along);
-                all.push(States::new(force.name(), along.collect()));
-            }
-        }
-        all
+        let all = self.scene.keeping_forces().into_iter().map(|force| {
+            let along = force.kept().iter().map(|kept| kept.along);
+            States::new(force.name(), along.collect())
+        });
+        all.collect()
     }
 
     /// Fits the states of agent `i` to its body, which was moved back before a line.

@@ -130,13 +130,13 @@ fn more(simulation: &Simulation, add: fn(&mut Needs)) -> Result<Undone, &'static
 pub fn everything() -> Needs {
     Needs {
         density: true,
-        pairs: Wanted::PAPER,
+        pairs: Wanted::ALL,
         rvo: true,
         social: true,
         walking: true,
         headings: true,
         avoidance: Some(AVOIDANCE),
-        legs: false, // they are state
+        reach: 0.0, // forces beyond the paper are not skipped
         removal: true,
         paces: true,
         directions: true,

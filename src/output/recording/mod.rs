@@ -108,7 +108,7 @@ impl Recorder {
         let layers: [(&'static ColoredLines, bool); 3] = [
             (&WAITS, scene.by_time() && scene.rooms().is_some()),
             (&WALL_FORCES, options.body_mass.is_some()),
-            (&LEANS, simulation.needs().legs),
+            (&LEANS, colored_lines::have_legs(simulation)),
         ];
         let drawn = layers.into_iter().filter(|(_, has)| *has);
         let lines: Vec<_> = drawn.map(|(layer, _)| layer).collect();

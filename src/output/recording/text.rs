@@ -12,7 +12,6 @@ use super::error::Cause;
 use super::options::RecordingOptions;
 use crate::scenery;
 use analysis::round::brief;
-use engine::profile::Term;
 use engine::scene::Scene;
 use figures::colors::WALL_FORCE_RANGE;
 
@@ -130,7 +129,7 @@ pub fn of_run(
                  the view's entities.\n";
     }
     if options.debug != DebugAgents::None {
-        rest += &on_debug_agents(&options.debug);
+        rest += &on_debug_agents(&options.debug, scene);
     }
     let opening = match options.opens_at {
         Some(time) => format!("* Look first at t = {time} s.\n"),
@@ -142,7 +141,7 @@ pub fn of_run(
 }
 
 /// The legend of the debug agents.
-fn on_debug_agents(debug: &DebugAgents) -> String {
+fn on_debug_agents(debug: &DebugAgents, scene: &Scene) -> String {
     let followed = match debug {
         DebugAgents::Ids(_) => "each of these agents has a tab",
         _ => "the densest of these agents at the moment that the recording opens at is followed",
@@ -157,8 +156,8 @@ fn on_debug_agents(debug: &DebugAgents) -> String {
          * Arrows: the weighted acceleration a of each force; white = their sum. Length: {}.\n",
         arrows::law(),
     );
-    for term in Term::all() {
-        text += &format!("  * `{}`: {}\n", term.name(), arrows::color(term).0);
+    for term in arrows::acting(scene) {
+        text += &format!("  * `{}`: {}\n", term.name, term.color.0);
     }
     text
 }

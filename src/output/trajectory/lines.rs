@@ -37,7 +37,7 @@ impl Lines {
         })
     }
 
-    /// [`COLUMNS`](super::COLUMNS), below a header with their names.
+    /// [`columns`](super::row::columns), below a header with their names.
     pub fn csv(file: File) -> Self {
         Self {
             file,

@@ -2,10 +2,11 @@
 
 use super::area::WalkableArea;
 use super::error::Cause;
-use super::row::{COLUMNS, Row, Value, rows};
+use super::row::{COLUMNS, Row, Value, columns, rows};
 use super::{TrajectoryError, frames_between};
-use engine::scene::Region;
+use engine::scene::{Region, Scene};
 use engine::simulation::Simulation;
+use scenario::catalog::Parameters;
 
 /// The values of a column, row by row.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,15 +31,24 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// The names of all columns, with their meanings and units.
+    /// The names of all columns, with their meanings and units. Those of forces are only there if a profile has them.
     pub fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
-        COLUMNS.iter().map(|&(name, meaning, _)| (name, meaning))
+        let of_forces = Parameters::every_force().into_iter().flat_map(|force| {
+            let shown = force.shown().iter();
+            shown
+                .map(|shown| (shown.name, shown.about))
+                .collect::<Vec<_>>()
+        });
+        let everywhere = COLUMNS.iter().map(|&(name, meaning, _)| (name, meaning));
+        everywhere.chain(of_forces)
     }
 
-    /// No rows yet, of the columns for which `is_kept` holds.
-    pub fn new(is_kept: impl Fn(&str) -> bool) -> Self {
-        let kept = COLUMNS.iter().filter(|(name, ..)| is_kept(name));
-        let begun = kept.map(|&(name, _, value)| (name, value, Column::of(value)));
+    /// No rows yet, of the columns of the scene for which `is_kept` holds.
+    pub fn new(scene: &Scene, is_kept: impl Fn(&str) -> bool) -> Self {
+        let kept = columns(scene)
+            .into_iter()
+            .filter(|(name, ..)| is_kept(name));
+        let begun = kept.map(|(name, _, value)| (name, value, Column::of(value)));
         Self {
             kept: begun.collect(),
         }
@@ -55,11 +65,10 @@ impl Columns {
         }
     }
 
-    /// The names of the columns, and their values; without columns of legs if no agent has legs.
+    /// The names of the columns, and their values.
     pub fn into_values(self) -> impl Iterator<Item = (&'static str, Column)> {
         let kept = self.kept.into_iter();
-        kept.filter(|(.., column)| !column.is_void())
-            .map(|(name, _, column)| (name, column))
+        kept.map(|(name, _, column)| (name, column))
     }
 }
 
@@ -68,7 +77,7 @@ impl Column {
     fn of(value: Value) -> Self {
         match value {
             Value::Count(_) => Self::Counts(Vec::new()),
-            Value::Number(_) | Value::OfLegs(_) => Self::Numbers(Vec::new()),
+            Value::Number(_) | Value::OfForce(..) => Self::Numbers(Vec::new()),
             Value::Name(_) => Self::Names {
                 codes: Vec::new(),
                 names: Vec::new(),
@@ -76,20 +85,14 @@ impl Column {
         }
     }
 
-    /// Whether it has rows, and no value in any of them.
-    fn is_void(&self) -> bool {
-        let Self::Numbers(values) = self else {
-            return false;
-        };
-        !values.is_empty() && values.iter().all(|value| value.is_nan())
-    }
-
     /// Adds the value of a row.
     fn push(&mut self, value: Value, row: &Row<'_>) {
         match (self, value) {
             (Self::Counts(values), Value::Count(of)) => values.push(of(row)),
             (Self::Numbers(values), Value::Number(of)) => values.push(of(row)),
-            (Self::Numbers(values), Value::OfLegs(of)) => values.push(of(row).unwrap_or(f64::NAN)),
+            (Self::Numbers(values), Value::OfForce(force, k)) => {
+                values.push(row.of_force(force, k).unwrap_or(f64::NAN));
+            }
             (Self::Names { codes, names }, Value::Name(of)) => codes.push(code(names, of(row))),
             // A column is that of its value.
             _ => {}

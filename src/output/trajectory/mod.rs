@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | `.sqlite`, `.db` | JuPedSim, PedPy | positions and orientations, the walkable area as WKT, and density, pressure, speed |
 //! | `.txt` | PedPy, the Pedestrian Dynamics Data Archive's tools | positions, in text |
-//! | `.csv` | everything | every quantity of every agent: [`COLUMNS`] |
+//! | `.csv` | everything | every quantity of every agent: [`COLUMNS`], and what forces keep |
 //!
 //! Frames are numbered 0, 1, 2, … at the file's own rate. Numbers are the values of the evaluated frame, with all
 //! digits. An interrupted run leaves whole frames: a text file has each frame as soon as it is logged, a SQLite file

@@ -11,7 +11,7 @@ use engine::simulation::Simulation;
 /// Below this speed, m/s, an agent faces its goal: the direction of such a velocity is noise.
 const STANDING: f64 = 0.01;
 
-/// One agent in one evaluated frame. As a record it has the fields of [`COLUMNS`].
+/// One agent in one evaluated frame. As a record it has the fields of [`columns`].
 #[derive(Clone, Copy)]
 pub struct Row<'a> {
     /// The frame's number at the file's own rate, from 0.
@@ -31,19 +31,20 @@ pub enum Value {
     Count(fn(&Row<'_>) -> u64),
     /// A number.
     Number(fn(&Row<'_>) -> f64),
-    /// A number of the legs; `None`, and no column in files, if no profile has legs.
-    OfLegs(fn(&Row<'_>) -> Option<f64>),
+    /// The number of this index among those that the force of this index in [`Agents::states`] shows; none for agents
+    /// on which the force does not act.
+    OfForce(usize, usize),
     /// A name, if there is one.
     Name(for<'a> fn(&Row<'a>) -> Option<&'a str>),
 }
 
-use Value::{Count, Name, Number, OfLegs};
+use Value::{Count, Name, Number, OfForce};
 
-/// The name, the meaning with its unit, and the value of each column. In a periodic scene each lap of an agent has an
+/// The name, the meaning with its unit, and the value of each column of all scenes. In a periodic scene each lap of an agent has an
 /// id of its own: its remainder modulo the number of agents is the agent's id. The goal of an agent that walks in a
 /// direction is its start.
 #[rustfmt::skip] // One line each.
-pub const COLUMNS: [(&str, &str, Value); 32] = [
+pub const COLUMNS: [(&str, &str, Value); 27] = [
     ("frame", "number of the frame at the file's own rate", Count(|row| row.number)),
     ("time", "time, s", Number(|row| row.time)),
     ("id", "the agent, from 0 in the order of entry", Count(|row| row.id().into())),
@@ -71,11 +72,6 @@ pub const COLUMNS: [(&str, &str, Value); 32] = [
     ("preferred_vel_y", "preferred velocity, m/s", Number(|row| row.fields.preferred_velocity[row.i].y)),
     ("acc_x", "acceleration, m/s²", Number(|row| row.fields.acceleration[row.i].x)),
     ("acc_y", "acceleration, m/s²", Number(|row| row.fields.acceleration[row.i].y)),
-    ("legs_x", "position of the legs, m", OfLegs(|row| Some(row.legs()?.x))),
-    ("legs_y", "position of the legs, m", OfLegs(|row| Some(row.legs()?.y))),
-    ("legs_vel_x", "velocity of the legs, m/s", OfLegs(|row| Some(row.legs_velocity()?.x))),
-    ("legs_vel_y", "velocity of the legs, m/s", OfLegs(|row| Some(row.legs_velocity()?.y))),
-    ("lean", "distance from the legs to the body, m", OfLegs(|row| row.lean())),
 ];
 
 impl<'a> Row<'a> {
@@ -140,34 +136,37 @@ impl<'a> Row<'a> {
         self.fields.pressure[self.i]
     }
 
-    /// y_i, meters.
-    fn legs(&self) -> Option<&'a Vector> {
-        self.agents.legs.get(self.i)
+    /// A number that a force shows, as [`OfForce`].
+    pub fn of_force(&self, force: usize, k: usize) -> Option<f64> {
+        let states = &self.agents.states[force];
+        let state = states.of(self.i)?;
+        let of_profile = self.group().blend.forces();
+        let mut all = of_profile.iter().chain(&self.scene.own_forces);
+        let force = all.find(|force| force.name() == states.force)?;
+        force.values(self.position(), state).get(k).copied()
     }
+}
 
-    /// w_i, m/s.
-    fn legs_velocity(&self) -> Option<&'a Vector> {
-        self.agents.legs_velocity.get(self.i)
-    }
-
-    /// |r_i − y_i|, meters.
-    fn lean(&self) -> Option<f64> {
-        self.legs().map(|_| self.agents.lean(self.i).norm())
-    }
+/// The columns of a scene: [`COLUMNS`], and those of the forces that keep a state for agents.
+pub fn columns(scene: &Scene) -> Vec<(&'static str, &'static str, Value)> {
+    let of_forces = scene.keeping_forces().into_iter().enumerate();
+    let of_forces = of_forces.flat_map(|(number, force)| {
+        let shown = force.shown().iter().enumerate();
+        shown.map(move |(k, shown)| (shown.name, shown.about, OfForce(number, k)))
+    });
+    COLUMNS.into_iter().chain(of_forces).collect()
 }
 
 impl Serialize for Row<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut record = serializer.serialize_struct("Row", COLUMNS.len())?;
-        for (name, _, value) in &COLUMNS {
+        let columns = columns(self.scene);
+        let mut record = serializer.serialize_struct("Row", columns.len())?;
+        for (name, _, value) in &columns {
             match value {
                 Count(of) => record.serialize_field(name, &of(self))?,
                 Number(of) => record.serialize_field(name, &of(self))?,
                 Name(of) => record.serialize_field(name, &of(self))?,
-                OfLegs(of) => match of(self) {
-                    Some(value) => record.serialize_field(name, &value)?,
-                    None => record.skip_field(name)?,
-                },
+                OfForce(force, k) => record.serialize_field(name, &self.of_force(*force, *k))?,
             }
         }
         record.end()

@@ -98,6 +98,15 @@ macro_rules! parameters {
                 all.into_iter().find_map(|(name, given)| is_wrong(given).then_some(name))
             }
 
+            /// All forces that are not in the paper and that parameters can switch on.
+            pub fn every_force() -> Vec<Arc<dyn Force>> {
+                let all = Self {
+                    $($($switch: Some(true),)?)*
+                    ..Self::default()
+                };
+                all.forces()
+            }
+
             /// The forces that are not in the paper.
             pub fn forces(&self) -> Vec<Arc<dyn Force>> {
                 let mut forces: Vec<Arc<dyn Force>> = Vec::new();

@@ -18,7 +18,7 @@ pub const TOTAL: Rgb = [255; 3];
 /// Half the widths of the arrows of the sum and of forces, pixels: where both are one, both can be seen.
 const BROAD: f32 = 3.5;
 const THIN: f32 = 1.6;
-/// The color of forces from outside the crate.
+/// The color of forces on all agents.
 const OWN: Rgb = [170; 3];
 /// The distance from the tip of an arrow to the middle of its name along x and y, meters.
 const GAP: [f64; 2] = [0.5, 0.22];
@@ -45,27 +45,58 @@ pub fn law() -> String {
     format!("{PER_DECADE} m × log₁₀(1 + a / {SMALL} m/s²): {examples} m/s²")
 }
 
-/// The color of a term's arrows, in words and as RGB.
-pub fn color(term: Term) -> (&'static str, Rgb) {
-    colors::TERMS[(term as usize).min(colors::TERMS.len() - 1)]
+/// A term that acts in a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Acting {
+    /// Its name in breakdowns.
+    pub name: String,
+    /// The color of its arrows, in words and as RGB.
+    pub color: (&'static str, Rgb),
 }
 
-/// The terms that some profile of `scene` has.
-pub fn acting(scene: &Scene) -> Vec<Term> {
-    let acts = |term: &Term| {
-        let mut steps = scene.groups.iter().flat_map(|group| group.blend.steps());
+impl Acting {
+    fn new(name: &str, number: usize) -> Self {
+        Self {
+            name: name.to_owned(),
+            color: colors::TERMS[number % colors::TERMS.len()],
+        }
+    }
+
+    /// Its name with spaces.
+    pub fn in_words(&self) -> String {
+        self.name.replace('_', " ")
+    }
+}
+
+/// The terms that some profile of `scene` has: those of the paper, then those of other forces.
+pub fn acting(scene: &Scene) -> Vec<Acting> {
+    let acts = |term: &&Term| {
+        let mut profiles = scene.profiles();
         (!term.is_of_walls() || !scene.walls.is_empty())
-            && steps.any(|step| step.profile.has(*term))
+            && profiles.any(|profile| profile.has(**term))
     };
-    Term::all().filter(acts).collect()
+    let of_paper = Term::ALL.iter().filter(acts);
+    let mut all: Vec<Acting> = of_paper
+        .map(|term| Acting::new(term.name(), *term as usize))
+        .collect();
+    let mut number = Term::ALL.len();
+    for force in scene.profiles().flat_map(|profile| &profile.forces) {
+        for name in force.term_names() {
+            if all.iter().all(|acting| acting.name != name) {
+                all.push(Acting::new(name, number));
+                number += 1;
+            }
+        }
+    }
+    all
 }
 
 /// A force on an agent: its name, its acceleration in m/s², and the color of its arrow.
 pub type Force = (String, Vector, Rgb);
 
 /// The sum of the forces on an agent, and the forces that are not zero.
-pub fn forces(agent: &Open, terms: &[Term]) -> Vec<Force> {
-    let of_term = |&term: &Term| (in_words(term), agent.force(term), color(term).1);
+pub fn forces(agent: &Open, terms: &[Acting]) -> Vec<Force> {
+    let of_term = |term: &Acting| (term.in_words(), agent.force(&term.name), term.color.1);
     let forces = agent.breakdown.own_forces.iter();
     let own = forces.map(|force| (force.name.clone(), force.acceleration.into(), OWN));
     let total = (
@@ -78,11 +109,6 @@ pub fn forces(agent: &Open, terms: &[Term]) -> Vec<Force> {
         .chain(own);
     all.filter(|(_, acceleration, _)| *acceleration != Vector::zeros())
         .collect()
-}
-
-/// The name of a term with spaces.
-pub fn in_words(term: Term) -> String {
-    term.name().replace('_', " ")
 }
 
 /// The arrows of these forces at the origin, the first one broad, and their names beside the tips. Arrows too short to

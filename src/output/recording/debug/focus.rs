@@ -16,12 +16,11 @@ use rerun::{
 };
 
 use super::Open;
-use super::arrows::{self, TOTAL};
+use super::arrows::{self, Acting, TOTAL};
 use super::layers::{HIDDEN, LINK, NEAREST, REPRESENTATIVE, WAY};
 use crate::recording::draw::{Point, color, px, texts, xy, y_up};
 use crate::recording::error::Cause;
 use engine::math::Vector;
-use engine::profile::Term;
 use engine::scene::Region;
 use figures::colors::Rgb;
 
@@ -58,7 +57,7 @@ pub fn forces(name: &str) -> String {
 /// Logs one followed agent.
 pub struct Focus {
     name: String,
-    terms: Vec<Term>,
+    terms: Vec<Acting>,
     /// The agent that is shown.
     shown: Option<u32>,
     /// Whether something at walls is shown.
@@ -67,11 +66,11 @@ pub struct Focus {
 
 impl Focus {
     /// Logs colors, widths, names and the scale.
-    pub fn begin(stream: &RecordingStream, name: String, terms: &[Term]) -> Result<Self, Cause> {
+    pub fn begin(stream: &RecordingStream, name: String, terms: &[Acting]) -> Result<Self, Cause> {
         let here = format!("{}/here", entity(&name));
         stream.log_static(here.as_str(), &y_up())?;
-        let words = terms.iter().map(|&term| arrows::in_words(term));
-        let colors = terms.iter().map(|&term| arrows::color(term).1);
+        let words = terms.iter().map(Acting::in_words);
+        let colors = terms.iter().map(|term| term.color.1);
         let series = SeriesLines::new()
             .with_names(["total".to_owned()].into_iter().chain(words))
             .with_colors([TOTAL].into_iter().chain(colors).map(color))
@@ -128,7 +127,7 @@ impl Focus {
         let (arrows, names) = arrows::named(&forces);
         let values = agent.map(|agent| {
             let total = Vector::from(agent.breakdown.acceleration).norm();
-            let values = self.terms.iter().map(|&term| agent.force(term).norm());
+            let values = self.terms.iter().map(|term| agent.force(&term.name).norm());
             Scalars::new([total].into_iter().chain(values))
         });
         let mut parts: Vec<&dyn AsComponents> = vec![&arrows, &names];

@@ -94,9 +94,10 @@ pub fn begin(
         add("ways", &line_style(WAY, 1.0), Box::new(ways))?;
     }
     for term in arrows::acting(scene) {
-        let style = arrow_style(arrows::color(term).1, 1.2).with_draw_order(13.0);
-        let data = move |open: &[Open]| arrows_of(open, |agent| agent.force(term));
-        add(&format!("forces/{}", term.name()), &style, Box::new(data))?;
+        let style = arrow_style(term.color.1, 1.2).with_draw_order(13.0);
+        let entity = format!("forces/{}", term.name);
+        let data = move |open: &[Open]| arrows_of(open, |agent| agent.force(&term.name));
+        add(&entity, &style, Box::new(data))?;
     }
     let style = arrow_style(arrows::TOTAL, 1.6).with_draw_order(14.0);
     let data = |open: &[Open]| arrows_of(open, |agent| agent.breakdown.acceleration.into());

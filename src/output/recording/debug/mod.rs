@@ -10,7 +10,6 @@ use super::draw::{Point, xy};
 use engine::breakdown::Breakdown;
 use engine::geometry::HiddenRegion;
 use engine::math::Vector;
-use engine::profile::Term;
 use engine::scene::{Region, Scene};
 use engine::simulation::Simulation;
 use figures::colors::Rgb;
@@ -74,7 +73,7 @@ impl DebugAgents {
 /// The names and colors of the accelerations that act in a scene, their sum first.
 pub fn force_terms(scene: &Scene) -> Vec<(String, Rgb)> {
     let acting = arrows::acting(scene).into_iter();
-    let terms = acting.map(|term| (arrows::in_words(term), arrows::color(term).1));
+    let terms = acting.map(|term| (term.in_words(), term.color.1));
     let total = ("total".to_owned(), arrows::TOTAL);
     std::iter::once(total).chain(terms).collect()
 }
@@ -85,7 +84,7 @@ pub fn forces_on(simulation: &Simulation, debug: &DebugAgents) -> Vec<(u32, Vec<
     let open = debug.open(simulation, &[]).into_iter();
     let forces = open.map(|agent| {
         let total = Vector::from(agent.breakdown.acceleration);
-        let own = terms.iter().map(|&term| agent.force(term));
+        let own = terms.iter().map(|term| agent.force(&term.name));
         let all = std::iter::once(total).chain(own);
         (agent.breakdown.id, all.collect())
     });
@@ -121,9 +120,14 @@ impl Open {
     }
 
     /// The weighted sum of one term over the active profiles.
-    pub fn force(&self, term: Term) -> Vector {
-        let shares = self.breakdown.profiles.iter();
-        let terms = shares.filter_map(|share| Some(share.accelerations.get(term)? * share.weight));
-        terms.sum()
+    pub fn force(&self, term: &str) -> Vector {
+        let terms = self.breakdown.profiles.iter().flat_map(|share| {
+            let listed = share.accelerations.listed();
+            listed.map(|(name, value)| (name, value * share.weight))
+        });
+        terms
+            .filter(|(name, _)| *name == term)
+            .map(|(_, value)| value)
+            .sum()
     }
 }

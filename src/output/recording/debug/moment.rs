@@ -84,10 +84,8 @@ fn accelerations(of: &Breakdown) -> String {
     let mut text = "| term | x | y | magnitude |\n|---|---:|---:|---:|\n".to_owned();
     for share in &of.profiles {
         text += &format!("| **{} × {:.4}** | | | |\n", share.name, share.weight);
-        for (term, value) in share.accelerations.listed() {
-            if let Some(value) = value {
-                text += &row(term.name(), value);
-            }
+        for (name, value) in share.accelerations.listed() {
+            text += &row(name, value);
         }
     }
     for force in &of.own_forces {

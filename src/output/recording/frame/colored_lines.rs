@@ -8,6 +8,7 @@ use rerun::{LineStrips2D, RecordingStream, Scalars};
 use crate::recording::draw::{Point, color, log_series, px, xy};
 use crate::recording::error::Cause;
 use analysis::wall_forces::Outlines;
+use engine::forces::legs;
 use engine::simulation::Simulation;
 use figures::colors::{ColorMap, LEAN, Rgb, WAIT, WALL_FORCE};
 
@@ -70,15 +71,21 @@ pub fn wall_forces(outlines: &Outlines, simulation: &Simulation, body_mass: f64)
     parts.collect()
 }
 
+/// Whether some profile has legs.
+pub fn have_legs(simulation: &Simulation) -> bool {
+    let mut states = simulation.frame().agents.states.iter();
+    states.any(|states| states.force == legs::NAME)
+}
+
 /// The leans of all agents that have legs; `None` if no profile has legs.
 pub fn leans(simulation: &Simulation) -> Option<Vec<Part>> {
-    if !simulation.needs().legs {
+    let agents = simulation.frame().agents;
+    if !have_legs(simulation) {
         return None;
     }
-    let agents = simulation.frame().agents;
     let part = |i: usize| {
-        let ends = [*agents.legs.get(i)?, agents.position[i]];
-        Some((ends.map(xy), agents.lean(i).norm() as f32))
+        let ends = [legs::position(agents, i)?, agents.position[i]];
+        Some((ends.map(xy), legs::lean(agents, i).norm() as f32))
     };
     Some(agents.present().filter_map(part).collect())
 }
