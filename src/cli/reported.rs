@@ -46,8 +46,7 @@ pub fn findings(run: &Run, watched: &Watched, typed: &Typed) -> Result<Findings,
         report: &format!("sandbox report {}", report.join(" ")),
         files: files(&run.scenario, typed),
     };
-    let document = of_run(run, watched, sources)?;
-    results::findings(run, document)
+    results::findings(run, of_run(run, watched, sources)?)
 }
 
 /// The files that a run reads.

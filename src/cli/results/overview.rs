@@ -78,8 +78,7 @@ pub fn facts(summary: &Summary) -> Vec<(String, String)> {
     let given = lines
         .into_iter()
         .filter_map(|(name, value)| Some((name, value?)));
-    let causes = stuck_because(&summary.stuck_because).map(|cause| ("", cause));
-    let all = given.chain(causes);
+    let all = given.chain(stuck_because(&summary.stuck_because).map(|cause| ("", cause)));
     all.map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
@@ -173,6 +172,5 @@ fn stuck_because(groups: &[StuckGroup]) -> impl Iterator<Item = String> {
         format!("{agents}: {cause} (agent {agent} at ({x:.2}, {y:.2}), for {for_secs:.0} s)")
     });
     let more = groups.len().saturating_sub(MOST);
-    let rest = format!("and {more} more causes: --json lists them");
-    causes.chain((more > 0).then_some(rest))
+    causes.chain((more > 0).then_some(format!("and {more} more causes: --json lists them")))
 }

@@ -278,10 +278,9 @@ impl Stages<'_> {
                     .runs
                     .iter()
                     .zip(&low.samples[target].runs);
-                let both =
-                    runs.filter_map(|(high, low)| Some((high.as_ref().ok()?, low.as_ref().ok()?)));
-                let differences =
-                    both.map(|(&high, &low)| (ratio(high, of) - ratio(low, of)) / width);
+                let differences = runs
+                    .filter_map(|(high, low)| Some((high.as_ref().ok()?, low.as_ref().ok()?)))
+                    .map(|(&high, &low)| (ratio(high, of) - ratio(low, of)) / width);
                 MeanStd::of(&differences.collect::<Vec<f64>>())
             });
             let differences: Vec<Option<MeanStd>> = changes.collect();

@@ -85,8 +85,7 @@ pub fn forces_on(simulation: &Simulation, debug: &DebugAgents) -> Vec<(u32, Vec<
     let open = debug.open(simulation, &[]).into_iter();
     let forces = open.map(|agent| {
         let total = Vector::from(agent.breakdown.acceleration);
-        let own = terms.iter().map(|&term| agent.force(term));
-        let all = std::iter::once(total).chain(own);
+        let all = std::iter::once(total).chain(terms.iter().map(|&term| agent.force(term)));
         (agent.breakdown.id, all.collect())
     });
     forces.collect()
