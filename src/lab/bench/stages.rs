@@ -210,10 +210,11 @@ impl Sizes {
         ["shortest", "quickest"].map(|choice| {
             say(&format!("office floor, {choice} ways"));
             let profile = format!("walk+sph, {choice}");
+            let crowd = office::settled(self.corridors, self.leaving, choice)?;
             Ok(Started::settled(
                 "office floor",
                 &profile,
-                office::settled(self.corridors, self.leaving, choice)?,
+                crowd,
                 self.leaving,
             ))
         })
