@@ -12,6 +12,7 @@ use super::failure::Failure;
 use analysis::crossing::{Line, Passages};
 use engine::scene::Region;
 use output::document::ENDINGS;
+use output::plot::has_extension;
 use scenario::trajectories::FRAME_RATES;
 
 /// A number in a range; the error is `otherwise`.
@@ -165,17 +166,10 @@ fn ending_in(
     known: &'static [&'static str],
     otherwise: &'static str,
 ) -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(move |path| match has_one_of(&path, known) {
+    PathBufValueParser::new().try_map(move |path| match has_extension(&path, known) {
         true => Ok(path),
         false => Err(otherwise),
     })
-}
-
-fn has_one_of(path: &Path, known: &[&str]) -> bool {
-    let extension = path.extension().unwrap_or_default();
-    known
-        .iter()
-        .any(|known| extension.eq_ignore_ascii_case(known))
 }
 
 /// A path with the extension that the Rerun viewer expects of a recording, or that of a page.
@@ -194,7 +188,7 @@ const PAGES: [&str; 2] = ["html", "htm"];
 
 /// Whether a file is a page, by its extension.
 pub fn is_page(path: &Path) -> bool {
-    has_one_of(path, &PAGES)
+    has_extension(path, &PAGES)
 }
 
 /// A path with the extension of a picture or an animation.

@@ -64,8 +64,7 @@ pub fn document(run: &Run, verbose: bool) -> Document {
             Block::table(tables::pairs(&overview::facts(&summary))),
         ],
         measured(run),
-        vec![Block::text(through_walls(run))],
-        thresholds(run),
+        remarks(run),
         journeys(&summary),
         computing(run, verbose),
     ];
@@ -154,27 +153,33 @@ fn names_of<'a>(head: &str, metrics: impl Iterator<Item = &'a Metric>) -> String
     lines.join(",\n")
 }
 
-/// The ids of the agents that `integrity` has found in walls; empty without any.
-fn through_walls(run: &Run) -> String {
-    let mut data = run.metrics.data();
-    let found = data.find(|(name, _)| name == Integrity::NAME);
+/// Remarks on the values: the agents that `integrity` has found in walls, and where thresholds are from.
+fn remarks(run: &Run) -> Vec<Block> {
+    let found = run
+        .metrics
+        .data()
+        .find(|(name, _)| *name == Integrity::NAME);
     let ids = found.and_then(|(_, ids)| Vec::<u32>::deserialize(ids).ok());
-    ids.map_or(String::new(), |ids| {
-        let ids: Vec<String> = ids.iter().map(u32::to_string).collect();
-        let first = ids.join(", ");
+    let in_walls = ids.map(|ids| {
+        let first = ids
+            .iter()
+            .map(u32::to_string)
+            .collect::<Vec<_>>()
+            .join(", ");
         format!(
             "Through walls, by id (at most ten): {first}; `sandbox inspect --agent` shows them."
         )
-    })
-}
-
-/// Where thresholds are from, if a measurement has any.
-fn thresholds(run: &Run) -> Vec<Block> {
+    });
     let mut measurements = run.scenario.measurements.iter();
+    let has_thresholds = measurements.any(|one| one.about().has_thresholds);
     let words =
         "Thresholds are from the literature, not safety limits: docs/reference/measurements.md";
-    let has_some = measurements.any(|one| one.about().has_thresholds);
-    Vec::from_iter(has_some.then(|| Block::text(words)))
+    let thresholds = has_thresholds.then(|| words.to_owned());
+    in_walls
+        .into_iter()
+        .chain(thresholds)
+        .map(Block::text)
+        .collect()
 }
 
 /// Tables of the journeys and places; empty without journeys.
