@@ -135,11 +135,7 @@ pub fn words(run: &str, scene: &SceneOptions, until: Option<f64>) -> Vec<String>
     let given = options
         .into_iter()
         .filter_map(|(name, value)| Some((name, value?)));
-    let set = scene
-        .changes
-        .set
-        .iter()
-        .map(|value| ("--set", value.clone()));
+    let set = scene.changes.set.iter().map(|one| ("--set", one.clone()));
     let words = given
         .chain(set)
         .map(|(name, value)| format!("{name} {}", quoted(&value)));

@@ -35,11 +35,7 @@ fn motivation(scene: &Scene) -> String {
         let law = group.blend.walking_law().and_then(|law| law.headings());
         law.is_some_and(|law| law.gap.longest() > 1.0 || law.gap.shortest() < 1.0)
     };
-    let values = scene
-        .groups
-        .iter()
-        .filter(reads)
-        .map(|group| group.motivation);
+    let values = scene.groups.iter().filter(reads).map(|one| one.motivation);
     let Some([low, high]) = values.fold(None, |ends: Option<[f64; 2]>, value| {
         let [low, high] = ends.unwrap_or([value; 2]);
         Some([low.min(value), high.max(value)])

@@ -144,10 +144,7 @@ impl Stages<'_> {
         });
         let first = self.trials.len();
         self.trials.extend(trials);
-        Ok(self.trials[first..]
-            .iter()
-            .map(|trial| trial.misfit)
-            .collect())
+        Ok(self.trials[first..].iter().map(|one| one.misfit).collect())
     }
 
     /// The number of the best trial: the first of the smallest misfit.
