@@ -71,3 +71,24 @@ fn the_text_says_how_many_stand_outside_of_the_line_of_a_queue() {
     );
     assert!(line.contains(&expected), "{line}, not {expected}");
 }
+
+#[test]
+fn the_text_has_a_table_of_values_and_below_it_the_names_of_those_that_are_zero() {
+    let document = json!({
+        "profile": "sph", "seed": 1, "duration_secs": 1,
+        "agents": [{"position": [0, 0], "goal": [9, 0]}, {"position": [0, 3], "goal": [9, 3]}],
+        "measurements": [{"integrity": {}}, {"exposure": {}}],
+    });
+    let (found, line) = said(&document, "highest_speed_m_per_s");
+    let speed = found["metrics"]["highest_speed_m_per_s"].as_f64().unwrap();
+    assert_eq!(line, format!("{speed:.3}  m/s"));
+    let (found, line) = said(&document, "0: agents_through_walls, ");
+    assert_eq!(line, "non_finite_frames");
+    let (_, line) = said(&document, "exposure_slow_agents");
+    assert_eq!(
+        line,
+        format!("{}  agents", found["metrics"]["exposure_slow_agents"])
+    );
+    let (_, line) = said(&document, "0: exposure_above_4_agents, ");
+    assert!(line.starts_with("exposure_above_4_person_secs, "), "{line}");
+}

@@ -54,6 +54,15 @@ z,,,3,
 }
 
 #[test]
+fn text_has_no_line_of_names_if_all_are_empty() {
+    let table = Table::of(&[("left", 12.0), ("stuck", 3.0)])
+        .column("", |row| row.0)
+        .column("", |row| row.1)
+        .table();
+    assert_eq!(table.text(), "left   12\nstuck   3\n");
+}
+
+#[test]
 fn html_has_every_cell_escaped_and_numbers_at_the_right() {
     let rows = ["<b>", "a & b"];
     let table = Table::of(&rows)

@@ -39,9 +39,7 @@ pub fn scenes() -> Vec<&'static str> {
 pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     let wanted = |name: &str| options.scene.is_empty() || options.scene.iter().any(|s| s == name);
     let in_time = |scene: &Scene| !(options.quick && scene.is_long && options.scene.is_empty());
-    let chosen = SCENES
-        .iter()
-        .filter(|scene| wanted(scene.name) && in_time(scene));
+    let chosen = SCENES.iter().filter(|one| wanted(one.name) && in_time(one));
     let plan = Plan {
         scenes: chosen.copied().collect(),
         knobs: options.knob.clone(),

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::arguments::ReplaceOptions;
 use super::documents::DocumentOptions;
 use super::failure::Failure;
-use super::inputs::tracks;
+use super::inputs::{read_options, tracks};
 use super::terminal::talk;
 use super::values::frame_rate;
 use lab::differences::{NotAReport, names as file_names, of_reports, of_tracks};
@@ -20,7 +20,7 @@ use runs::outputs::Outputs;
 use scenario::input;
 use scenario::kinds::is_scenario;
 use scenario::quote::shown;
-use scenario::trajectories::{ReadOptions, Tracks, Unit};
+use scenario::trajectories::{ReadOptions, Tracks};
 
 #[derive(Args)]
 pub struct CompareOptions {
@@ -51,10 +51,7 @@ enum Input {
 }
 
 pub fn run(options: &CompareOptions) -> Result<(), Failure> {
-    let read = ReadOptions {
-        unit: options.unit.as_deref().and_then(Unit::named),
-        fps: options.fps,
-    };
+    let read = read_options(&options.unit, options.fps);
     let paths = [&options.a, &options.b];
     let mut outputs = Outputs::new(options.replace.force);
     outputs.reads("A,", paths[0]);

@@ -1,5 +1,7 @@
 //! Why a command failed, and its exit code.
 
+use std::fmt::Display;
+
 use engine::breakdown::Breakdown;
 use engine::simulation::{Fault, Simulation};
 use lab::error::LabError;
@@ -65,6 +67,14 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// An invalid input, or else a file that cannot be written.
+    fn of(error: &dyn Display, is_input: bool) -> Self {
+        match is_input {
+            true => Self::Input(error.to_string()),
+            false => Self::Output(error.to_string()),
+        }
+    }
+
     /// The exit code of the program.
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -101,37 +111,32 @@ impl From<QuestionError> for Failure {
 
 impl From<OutputsError> for Failure {
     fn from(error: OutputsError) -> Self {
-        match error {
-            OutputsError::Unwritable(..) => Self::Output(error.to_string()),
-            error => Self::Input(error.to_string()),
-        }
+        Self::of(&error, !matches!(error, OutputsError::Unwritable(..)))
     }
 }
 
 impl From<CheckpointError> for Failure {
     fn from(error: CheckpointError) -> Self {
-        match error {
-            CheckpointError::Unwritable { .. } => Self::Output(error.to_string()),
-            error => Self::Input(error.to_string()),
-        }
+        Self::of(&error, !matches!(error, CheckpointError::Unwritable { .. }))
     }
 }
 
 impl From<RecordingError> for Failure {
     fn from(error: RecordingError) -> Self {
-        match error {
-            RecordingError::SwitchedOff(_) => Self::Input(error.to_string()),
-            error => Self::Output(error.to_string()),
-        }
+        Self::of(&error, matches!(error, RecordingError::SwitchedOff(_)))
     }
 }
 
 impl From<PageError> for Failure {
     fn from(error: PageError) -> Self {
-        match error {
-            PageError::NoViewer { .. } => Self::Input(error.to_string()),
-            error => Self::Output(error.to_string()),
-        }
+        Self::of(&error, matches!(error, PageError::NoViewer { .. }))
+    }
+}
+
+impl From<PlotError> for Failure {
+    fn from(error: PlotError) -> Self {
+        let is_input = matches!(error, PlotError::Large(..) | PlotError::NoFfmpeg { .. });
+        Self::of(&error, is_input)
     }
 }
 
@@ -141,15 +146,6 @@ impl From<TrajectoryError> for Failure {
             TrajectoryError::Unwritten { .. } => Self::Output(error.to_string()),
             TrajectoryError::FrameRate { .. } => Self::Input(format!("--trajectory-fps: {error}")),
             TrajectoryError::UnknownFormat(_) => Self::Input(format!("--trajectory {error}")),
-        }
-    }
-}
-
-impl From<PlotError> for Failure {
-    fn from(error: PlotError) -> Self {
-        match error {
-            PlotError::Large(..) | PlotError::NoFfmpeg { .. } => Self::Input(error.to_string()),
-            error => Self::Output(error.to_string()),
         }
     }
 }

@@ -101,10 +101,8 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
 }
 
 fn breakdown(simulation: &Simulation, id: u32, i: usize) -> Result<Breakdown, Failure> {
-    Breakdown::of(simulation, i).ok_or_else(|| {
-        let reason = format!("--agent {id}: the frame has no densities");
-        Failure::Output(reason)
-    })
+    Breakdown::of(simulation, i)
+        .ok_or_else(|| Failure::Output(format!("--agent {id}: the frame has no densities")))
 }
 
 /// The breakdowns of agents, given by their ids and indices, for readers and programs: a row for each number.

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::arguments::{ProgramOptions, use_threads};
 use super::failure::Failure;
 use super::frames::{Run, recorded, tracked};
-use super::inputs::NO_WALLS;
+use super::inputs::read_options;
 use super::terminal::tell;
 use super::values::{frame_rate, page};
 use super::watch::bar;
@@ -17,7 +17,6 @@ use output::page::{EmbeddedViewer, Moment, Page, PageOptions as Content};
 use output::picture::{Crowd, Picture};
 use output::results::{pairs, reproducible, results, section};
 use runs::outputs::{Manner, Outputs};
-use scenario::trajectories::{ReadOptions, Unit};
 
 /// Where densities come from, in words.
 const DENSITIES: &str =
@@ -100,16 +99,9 @@ fn open(options: &PageOptions, outputs: &mut Outputs) -> Result<Run, Failure> {
         let problem = "--page-viewer is for recordings: the Rerun viewer shows no trajectory files";
         return Err(Failure::Input(problem.to_owned()));
     }
-    outputs.reads("the trajectories", path);
+    let read = read_options(&options.unit, options.trajectory_fps);
     let plan = options.geometry.as_deref();
-    if let Some(plan) = plan.filter(|plan| plan.as_os_str() != NO_WALLS) {
-        outputs.reads("--geometry", plan);
-    }
-    let read = ReadOptions {
-        unit: options.unit.as_deref().and_then(Unit::named),
-        fps: options.trajectory_fps,
-    };
-    tracked::open(path, &read, plan, &["density", "speed"])
+    tracked::open(path, &read, plan, &["density", "speed"], outputs)
 }
 
 /// Writes the page; returns the number of frames.

@@ -139,11 +139,10 @@ fn of_scenario(
     (mut outputs, out): (Outputs, &Path),
 ) -> Result<Findings, Failure> {
     if let Some(results) = &options.results {
-        let reason = format!(
+        return Err(Failure::Input(format!(
             "--results {}: is for studies, not for scenarios",
             results.display()
-        );
-        return Err(Failure::Input(reason));
+        )));
     }
     let source = Source::named(&options.run);
     let until = options.until.map(|secs| ("--until", secs));

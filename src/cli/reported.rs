@@ -46,8 +46,7 @@ pub fn findings(run: &Run, watched: &Watched, typed: &Typed) -> Result<Findings,
         report: &format!("sandbox report {}", report.join(" ")),
         files: files(&run.scenario, typed),
     };
-    let document = of_run(run, watched, sources)?;
-    results::findings(run, document)
+    results::findings(run, of_run(run, watched, sources)?)
 }
 
 /// The files that a run reads.
@@ -136,11 +135,7 @@ pub fn words(run: &str, scene: &SceneOptions, until: Option<f64>) -> Vec<String>
     let given = options
         .into_iter()
         .filter_map(|(name, value)| Some((name, value?)));
-    let set = scene
-        .changes
-        .set
-        .iter()
-        .map(|value| ("--set", value.clone()));
+    let set = scene.changes.set.iter().map(|one| ("--set", one.clone()));
     let words = given
         .chain(set)
         .map(|(name, value)| format!("{name} {}", quoted(&value)));

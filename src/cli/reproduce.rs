@@ -41,11 +41,7 @@ const ALL: &str = "all";
 
 /// The names of all products, and [`ALL`].
 pub fn names() -> Vec<&'static str> {
-    PRODUCTS
-        .iter()
-        .map(|product| product.name)
-        .chain([ALL])
-        .collect()
+    PRODUCTS.iter().map(|one| one.name).chain([ALL]).collect()
 }
 
 /// All products and [`ALL`], each with a line about it.

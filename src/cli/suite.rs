@@ -208,10 +208,9 @@ fn status(asked: &Asked, options: &SuiteOptions) -> Result<Option<PathBuf>, Fail
     let status = Status::beside(document);
     match asked.names.is_empty() && (options.profile.is_empty() || status.is_some()) {
         true => Ok(status),
-        false => {
-            let reason = "--update needs all cases and profiles; name none";
-            Err(Failure::Input(reason.to_owned()))
-        }
+        false => Err(Failure::Input(
+            "--update needs all cases and profiles; name none".to_owned(),
+        )),
     }
 }
 

@@ -12,6 +12,7 @@ use super::failure::Failure;
 use analysis::crossing::{Line, Passages};
 use engine::scene::Region;
 use output::document::ENDINGS;
+use output::plot::has_extension;
 use scenario::trajectories::FRAME_RATES;
 
 /// A number in a range; the error is `otherwise`.
@@ -58,28 +59,19 @@ pub fn repeats(text: &str) -> Result<usize, &'static str> {
 }
 
 pub fn runs(text: &str) -> Result<usize, &'static str> {
-    within(
-        text,
-        4..=100_000,
-        "not a number of runs between 4 and 100000",
-    )
+    let otherwise = "not a number of runs between 4 and 100000";
+    within(text, 4..=100_000, otherwise)
 }
 
 pub fn minutes(text: &str) -> Result<f64, &'static str> {
-    within(
-        text,
-        f64::MIN_POSITIVE..=1e7,
-        "not a time in minutes above 0",
-    )
+    let range = f64::MIN_POSITIVE..=1e7;
+    within(text, range, "not a time in minutes above 0")
 }
 
 /// Percent.
 pub fn confidence(text: &str) -> Result<f64, &'static str> {
-    within(
-        text,
-        50.0..=99.99,
-        "not a probability between 50 and 99.99 percent",
-    )
+    let otherwise = "not a probability between 50 and 99.99 percent";
+    within(text, 50.0..=99.99, otherwise)
 }
 
 pub fn seed(text: &str) -> Result<u64, &'static str> {
@@ -148,9 +140,8 @@ pub fn passages(text: &str) -> Result<Passages, &'static str> {
         (0.0..=100.0).contains(&percent).then_some(percent / 100.0)
     };
     if let (Some(first), Some(last)) = (part(first), part(last)) {
-        let parts = [first, last];
         return (first < last)
-            .then_some(Passages::Parts(parts))
+            .then_some(Passages::Parts([first, last]))
             .ok_or(otherwise);
     }
     let [first, last] = [first, last].map(|text| within(text.trim(), 1.., otherwise));
@@ -170,52 +161,49 @@ pub fn ids(text: &str) -> Result<Vec<u32>, Failure> {
     })
 }
 
+/// A path with one of these extensions; the error is `otherwise`.
+fn ending_in(
+    known: &'static [&'static str],
+    otherwise: &'static str,
+) -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(move |path| match has_extension(&path, known) {
+        true => Ok(path),
+        false => Err(otherwise),
+    })
+}
+
 /// A path with the extension that the Rerun viewer expects of a recording, or that of a page.
 pub fn recording() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|path| match path.extension() {
-        Some(extension) if extension.eq_ignore_ascii_case("rrd") => Ok(path),
-        _ if is_page(&path) => Ok(path),
-        _ => Err("a recording's name must end in .rrd, that of a page in .html"),
-    })
+    let otherwise = "a recording's name must end in .rrd, that of a page in .html";
+    ending_in(&["rrd", "html", "htm"], otherwise)
 }
 
 /// A path with the extension of a page.
 pub fn page() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|path| match is_page(&path) {
-        true => Ok(path),
-        false => Err("a page's name must end in .html"),
-    })
+    ending_in(&PAGES, "a page's name must end in .html")
 }
+
+/// The extensions of pages.
+const PAGES: [&str; 2] = ["html", "htm"];
 
 /// Whether a file is a page, by its extension.
 pub fn is_page(path: &Path) -> bool {
-    let extension = path.extension().unwrap_or_default();
-    extension.eq_ignore_ascii_case("html") || extension.eq_ignore_ascii_case("htm")
+    has_extension(path, &PAGES)
 }
 
 /// A path with the extension of a picture or an animation.
 pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|path| {
-        let extension = path.extension().unwrap_or_default();
-        let mut known = ["svg", "png", "pdf", "gif", "mp4", "webm", "html", "htm"].iter();
-        match known.any(|known| extension.eq_ignore_ascii_case(known)) {
-            true => Ok(path),
-            false => Err("a picture's name must end in .svg, .png or .pdf, that of an animation in .gif, .png, .mp4 or \
-                          .webm, that of a page in .html"),
-        }
-    })
+    let known = &["svg", "png", "pdf", "gif", "mp4", "webm", "html", "htm"];
+    let otherwise = "a picture's name must end in .svg, .png or .pdf, that of an animation in .gif, .png, .mp4 or \
+                     .webm, that of a page in .html";
+    ending_in(known, otherwise)
 }
 
 /// A path with the extension of a file with results.
 pub fn document() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|path| {
-        let extension = path.extension().unwrap_or_default();
-        let mut known = ENDINGS.iter();
-        match known.any(|known| extension.eq_ignore_ascii_case(known)) {
-            true => Ok(path),
-            false => Err("the name must end in .html, .pdf, .md, .csv or .json; `sandbox draw` draws pictures"),
-        }
-    })
+    let otherwise =
+        "the name must end in .html, .pdf, .md, .csv or .json; `sandbox draw` draws pictures";
+    ending_in(&ENDINGS, otherwise)
 }
 
 /// The width of a picture.

@@ -354,9 +354,7 @@ pub fn followed(path: &Path) -> io::Result<PathBuf> {
 
 /// The folder that a file is in.
 pub fn folder_of(path: &Path) -> &Path {
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = path.parent().filter(|one| !one.as_os_str().is_empty());
     folder.unwrap_or(Path::new("."))
 }
 

@@ -99,10 +99,7 @@ fn in_words(event: &Event) -> (String, &'static str) {
     let name = &event.name;
     match event.kind {
         EventKind::Entered(count) => (format!("{name}: {count} agents enter"), INFO),
-        EventKind::PushBegan(count) => {
-            let text = format!("{name}: {count} agents begin to push");
-            (text, WARN)
-        }
+        EventKind::PushBegan(count) => (format!("{name}: {count} agents begin to push"), WARN),
         EventKind::Opened => (format!("{name} opens"), INFO),
         EventKind::Closed => (format!("{name} closes"), WARN),
         EventKind::Released => (format!("{name}: agents wait no longer"), INFO),

@@ -348,10 +348,9 @@ pub fn of_place(walls: &Walls, place: &Place, lines: &[Vector], screen: &Screen)
             };
             let is_narrow = (b - a).norm() * screen.scale < NARROW && place.is_exit();
             let narrow = [b, a].map(beside).into_iter().filter(|_| is_narrow);
-            let others = AROUND.map(|side| (middle, side));
             narrow
                 .chain([side(out), side(-out)])
-                .chain(others)
+                .chain(AROUND.map(|side| (middle, side)))
                 .collect()
         }
         Kind::Disk { .. } | Kind::Waiting(_) => around(lines, false),

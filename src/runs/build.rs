@@ -43,8 +43,7 @@ fn main() -> io::Result<()> {
     hasher.update(fs::read(LOCK).unwrap_or_default());
     let compiler = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     hasher.update(Command::new(compiler).arg("--version").output()?.stdout);
-    let digest = hasher.finalize();
-    let digits: String = digest[..16]
+    let digits: String = hasher.finalize()[..16]
         .iter()
         .map(|byte| format!("{byte:02x}"))
         .collect();

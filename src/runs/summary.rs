@@ -190,14 +190,12 @@ impl Summary {
             ("t95_secs", _) => self.t95_secs,
             ("t100_secs", _) => self.t100_secs,
             ("highest_density", _) => self.highest_density.map(|highest| highest.density_per_m2),
-            ("longest_queue", _) => {
-                let queues = self.longest_queues.iter();
-                Some(
-                    queues
-                        .map(|queue| f64::from(queue.agents))
-                        .fold(0.0, f64::max),
-                )
-            }
+            ("longest_queue", _) => Some(
+                self.longest_queues
+                    .iter()
+                    .map(|queue| f64::from(queue.agents))
+                    .fold(0.0, f64::max),
+            ),
             (_, Some((LEFT_BY, exit))) => left_by(exit),
             (_, Some((QUEUE, before))) => Some(queue(before)),
             _ => None,

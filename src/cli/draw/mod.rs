@@ -18,7 +18,7 @@ use serde_json::json;
 use super::arguments::{SceneOptions, use_threads};
 use super::failure::Failure;
 use super::frames::{Run, recorded, tracked};
-use super::inputs::{NO_WALLS, in_order};
+use super::inputs::{in_order, read_options};
 use super::interrupt::Interrupt;
 use super::moment;
 use super::page::PageOptions;
@@ -29,7 +29,6 @@ use look::{Look, NONE};
 use output::picture::{Paths, Picture, Trails};
 use output::plot::{Animation, PAPER_DPI, Print};
 use runs::outputs::{Manner, Outputs};
-use scenario::trajectories::{ReadOptions, Unit};
 
 /// The width of pictures without another one, millimeters: two columns of a paper.
 const WIDTH_MM: f64 = 180.0;
@@ -209,16 +208,9 @@ fn open(
         }
         "sqlite" | "db" | "txt" | "csv" => {
             refuse_settings(options, &options.scene)?;
-            outputs.reads("the trajectories", path);
+            let read = read_options(&options.unit, options.trajectory_fps);
             let plan = options.scene.geometry.as_deref();
-            if let Some(plan) = plan.filter(|plan| plan.as_os_str() != NO_WALLS) {
-                outputs.reads("--geometry", plan);
-            }
-            let read = ReadOptions {
-                unit: options.unit.as_deref().and_then(Unit::named),
-                fps: options.trajectory_fps,
-            };
-            tracked::open(path, &read, plan, &[color(options, false)])?
+            tracked::open(path, &read, plan, &[color(options, false)], outputs)?
         }
         _ => return simulate(options, times, outputs),
     };

@@ -48,9 +48,8 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
         // No agent goes there, so the scene has no path map to it.
         false => {
             let goals: Vec<_> = place.map(|k| places[k].goals.clone()).into_iter().collect();
-            let planned = Ways::new(ways.floor.clone(), &goals, point.into_iter().collect());
-            let extra =
-                planned.map_err(|error| refused(format!("{error}; give a point that is")))?;
+            let extra = Ways::new(ways.floor.clone(), &goals, point.into_iter().collect())
+                .map_err(|error| refused(format!("{error}; give a point that is")))?;
             let to = place.map_or(to, |_| Destination::Place(0));
             (Arc::new(extra), to)
         }

@@ -173,8 +173,7 @@ impl<F: Film> Frames for Over<F> {
         let away = |k: &usize| (self.times[*k] - time).abs();
         let after = self.times.partition_point(|&own| own < time);
         let near = after.saturating_sub(1)..(after + 1).min(self.times.len());
-        let nearest = near.min_by(|a, b| away(a).total_cmp(&away(b)));
-        self.current = nearest.unwrap_or(0);
+        self.current = near.min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
         self.crowd = self.film.crowd(self.current);
         Ok(())
     }
@@ -226,8 +225,7 @@ pub fn kernel(support_radius: f64) -> Kernel {
 
 /// The SPH density of each person (§8), P/m².
 fn densities(crowd: &Crowd, site: &Site, kernel: &Kernel) -> Vec<f64> {
-    let how = (kernel, Behind::Same);
-    let parts = parts(site, &crowd.position, &crowd.mass, how);
+    let parts = parts(site, &crowd.position, &crowd.mass, (kernel, Behind::Same));
     let density = parts.into_iter().map(|part| {
         let seen = 1.0 - part.hidden.share.min(MOST_HIDDEN);
         part.from_people / seen

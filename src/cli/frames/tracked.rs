@@ -10,6 +10,7 @@ use engine::math::Vector;
 use engine::scene::Scene;
 use lab::measure::speed;
 use output::picture::Crowd;
+use runs::outputs::Outputs;
 use scenario::quote::shown;
 use scenario::trajectories::{Column, ReadOptions, Tracks, columns};
 
@@ -22,13 +23,18 @@ struct Tracked {
 }
 
 /// The run that a trajectory file holds, with the walls of a floor plan or else those of the file. `wanted` are the
-/// columns that are needed.
+/// columns that are needed. Adds the files to `outputs`.
 pub fn open(
     path: &Path,
     options: &ReadOptions,
     geometry: Option<&Path>,
     wanted: &[&str],
+    outputs: &mut Outputs,
 ) -> Result<Run, Failure> {
+    outputs.reads("the trajectories", path);
+    if let Some(plan) = geometry.filter(|plan| plan.as_os_str() != inputs::NO_WALLS) {
+        outputs.reads("--geometry", plan);
+    }
     let tracks = inputs::tracks(path, options).map_err(|failure| match failure {
         Failure::Read(error) => Failure::Read(error.with_rate_option("--trajectory-fps")),
         other => other,

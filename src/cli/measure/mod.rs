@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use super::arguments::use_threads;
 use super::documents::add_folder;
 use super::failure::Failure;
-use super::inputs::{in_order, site, tracks};
+use super::inputs::{in_order, read_options, site, tracks};
 use super::terminal::talk;
 use super::watch::bar;
 use analysis::site::Site;
@@ -20,7 +20,7 @@ use lab::measure::{
 };
 use output::recording::check_enabled;
 use runs::outputs::{Manner, Outputs};
-use scenario::trajectories::{ReadOptions, Tracks, Unit};
+use scenario::trajectories::Tracks;
 
 pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     check_enabled()?;
@@ -31,10 +31,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
         in_order(("--from", from), ("--until", until))?;
     }
     check_outputs(options, &folder)?;
-    let read = ReadOptions {
-        unit: options.unit.as_deref().and_then(Unit::named),
-        fps: options.fps,
-    };
+    let read = read_options(&options.unit, options.fps);
     let tracks = tracks(&options.trajectory, &read)?;
     let site = site(&options.trajectory, options.geometry.as_deref(), &tracks)?;
     let what = what(options, &tracks);

@@ -64,8 +64,7 @@ pub fn document(run: &Run, verbose: bool) -> Document {
             Block::table(tables::pairs(&overview::facts(&summary))),
         ],
         measured(run),
-        vec![Block::text(through_walls(run))],
-        thresholds(run),
+        remarks(run),
         journeys(&summary),
         computing(run, verbose),
     ];
@@ -73,16 +72,20 @@ pub fn document(run: &Run, verbose: bool) -> Document {
     Document::of(title, blocks.concat())
 }
 
-/// A table of the values of the measurements, group by group, and the names of those that are alike in a group: values
-/// of 0, and missing ones.
+/// A table of the values of the measurements, group by group; below it the names of those that are alike in a group:
+/// values of 0, and missing ones.
 fn measured(run: &Run) -> Vec<Block> {
     let metrics = run.metrics.results(&run.simulation);
-    let groups = || metrics.chunk_by(|one, other| one.measurement == other.measurement);
-    let mut rows: Vec<Option<&Metric>> = Vec::new();
+    let (mut rows, mut names): (Vec<Option<&Metric>>, Vec<String>) = (Vec::new(), Vec::new());
     let mut before = 0;
-    for group in groups() {
-        let apart = group.iter().filter(|metric| !is_folded(group, metric));
-        let shown: Vec<Option<&Metric>> = apart.map(Some).collect();
+    for group in metrics.chunk_by(|one, other| one.measurement == other.measurement) {
+        let alike = |value| group.iter().filter(move |metric| metric.value == value);
+        let mut folded = vec![("0", Some(0.0)), ("–", None)];
+        folded.retain(|(_, value)| alike(*value).count() > 1);
+        let lines = folded.iter().map(|one| names_of(one.0, alike(one.1)));
+        names.extend(lines);
+        let stands = |metric: &&Metric| folded.iter().all(|(_, value)| metric.value != *value);
+        let shown: Vec<Option<&Metric>> = group.iter().filter(stands).map(Some).collect();
         if shown.is_empty() {
             continue;
         }
@@ -93,25 +96,10 @@ fn measured(run: &Run) -> Vec<Block> {
         before = shown.len();
         rows.extend(shown);
     }
-    let folded = groups().flat_map(|group| group.iter().filter(|metric| is_folded(group, metric)));
-    let names = |value| folded.clone().filter(move |metric| metric.value == value);
-    let mut blocks = vec![
-        Block::text(names_of("0", names(Some(0.0)))),
-        Block::text(names_of("–", names(None))),
-    ];
-    if !rows.is_empty() {
-        blocks.insert(
-            0,
-            Block::table(values(&rows, &published_for(&run.scenario))),
-        );
-    }
-    blocks
-}
-
-/// Whether other values of the group are missing or 0 like this one.
-fn is_folded(group: &[Metric], metric: &Metric) -> bool {
-    let alike = group.iter().filter(|other| other.value == metric.value);
-    metric.value.is_none_or(|value| value == 0.0) && alike.count() > 1
+    let table = || Block::table(values(&rows, &published_for(&run.scenario)));
+    let shown = (!rows.is_empty()).then(table);
+    let folded = Block::text(names.join("\n"));
+    shown.into_iter().chain([folded]).collect()
 }
 
 /// A table of values, beside those that are published; rows without a value stay empty.
@@ -139,7 +127,7 @@ fn values(rows: &[Option<&Metric>], published: &[(&str, f64)]) -> Table {
     table.column("paper, Table 1", paper).table()
 }
 
-/// The names of values that are alike, in lines; empty without any.
+/// The names of values that are alike, in lines.
 fn names_of<'a>(head: &str, metrics: impl Iterator<Item = &'a Metric>) -> String {
     let mut lines: Vec<String> = Vec::new();
     for Metric { name, .. } in metrics {
@@ -154,27 +142,33 @@ fn names_of<'a>(head: &str, metrics: impl Iterator<Item = &'a Metric>) -> String
     lines.join(",\n")
 }
 
-/// The ids of the agents that `integrity` has found in walls; empty without any.
-fn through_walls(run: &Run) -> String {
-    let mut data = run.metrics.data();
-    let found = data.find(|(name, _)| name == Integrity::NAME);
+/// Remarks on the values: the agents that `integrity` has found in walls, and where thresholds are from.
+fn remarks(run: &Run) -> Vec<Block> {
+    let found = run
+        .metrics
+        .data()
+        .find(|(name, _)| *name == Integrity::NAME);
     let ids = found.and_then(|(_, ids)| Vec::<u32>::deserialize(ids).ok());
-    ids.map_or(String::new(), |ids| {
-        let ids: Vec<String> = ids.iter().map(u32::to_string).collect();
-        let first = ids.join(", ");
+    let in_walls = ids.map(|ids| {
+        let first = ids
+            .iter()
+            .map(u32::to_string)
+            .collect::<Vec<_>>()
+            .join(", ");
         format!(
             "Through walls, by id (at most ten): {first}; `sandbox inspect --agent` shows them."
         )
-    })
-}
-
-/// Where thresholds are from, if a measurement has any.
-fn thresholds(run: &Run) -> Vec<Block> {
+    });
     let mut measurements = run.scenario.measurements.iter();
+    let has_thresholds = measurements.any(|one| one.about().has_thresholds);
     let words =
         "Thresholds are from the literature, not safety limits: docs/reference/measurements.md";
-    let has_some = measurements.any(|one| one.about().has_thresholds);
-    Vec::from_iter(has_some.then(|| Block::text(words)))
+    let thresholds = has_thresholds.then(|| words.to_owned());
+    in_walls
+        .into_iter()
+        .chain(thresholds)
+        .map(Block::text)
+        .collect()
 }
 
 /// Tables of the journeys and places; empty without journeys.

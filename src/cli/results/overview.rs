@@ -35,11 +35,7 @@ fn motivation(scene: &Scene) -> String {
         let law = group.blend.walking_law().and_then(|law| law.headings());
         law.is_some_and(|law| law.gap.longest() > 1.0 || law.gap.shortest() < 1.0)
     };
-    let values = scene
-        .groups
-        .iter()
-        .filter(reads)
-        .map(|group| group.motivation);
+    let values = scene.groups.iter().filter(reads).map(|one| one.motivation);
     let Some([low, high]) = values.fold(None, |ends: Option<[f64; 2]>, value| {
         let [low, high] = ends.unwrap_or([value; 2]);
         Some([low.min(value), high.max(value)])
@@ -78,8 +74,7 @@ pub fn facts(summary: &Summary) -> Vec<(String, String)> {
     let given = lines
         .into_iter()
         .filter_map(|(name, value)| Some((name, value?)));
-    let causes = stuck_because(&summary.stuck_because).map(|cause| ("", cause));
-    let all = given.chain(causes);
+    let all = given.chain(stuck_because(&summary.stuck_because).map(|cause| ("", cause)));
     all.map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
@@ -173,6 +168,5 @@ fn stuck_because(groups: &[StuckGroup]) -> impl Iterator<Item = String> {
         format!("{agents}: {cause} (agent {agent} at ({x:.2}, {y:.2}), for {for_secs:.0} s)")
     });
     let more = groups.len().saturating_sub(MOST);
-    let rest = format!("and {more} more causes: --json lists them");
-    causes.chain((more > 0).then_some(rest))
+    causes.chain((more > 0).then_some(format!("and {more} more causes: --json lists them")))
 }

@@ -27,10 +27,7 @@ impl Document {
         let (title, subtitle) = (escape(&self.title), escape(&self.subtitle));
         let mut text = head.text();
         text += &format!("<main>\n<h1>{title}</h1>\n<p class=\"about\">{subtitle}</p>\n");
-        let has_parts = self
-            .blocks
-            .iter()
-            .any(|block| matches!(block, Block::Part(..)));
+        let has_parts = self.blocks.iter().any(|one| matches!(one, Block::Part(..)));
         for block in self.blocks.iter().filter(|block| !block.is_empty()) {
             text += &shown(block, if has_parts { 3 } else { 2 })?;
         }

@@ -51,7 +51,8 @@ fn ffmpeg() -> Command {
     command
 }
 
-fn has_extension(path: &Path, wanted: &[&str]) -> bool {
+/// Whether a file has one of these extensions, in letters of any case.
+pub fn has_extension(path: &Path, wanted: &[&str]) -> bool {
     let own = path.extension().unwrap_or_default();
     wanted.iter().any(|one| own.eq_ignore_ascii_case(one))
 }

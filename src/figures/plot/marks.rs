@@ -193,8 +193,7 @@ impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
         match mark {
             Mark::Discs(discs) => self.discs(discs)?,
             Mark::Area(corners, color) => {
-                let closed = corners.iter().chain(corners.first());
-                let path = self.panel.path(closed);
+                let path = self.panel.path(corners.iter().chain(corners.first()));
                 let rim: Vec<Place> = path.into_iter().map(bounded).collect();
                 self.chart.draw_series([Polygon::new(rim, fill(*color))])?;
             }

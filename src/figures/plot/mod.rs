@@ -20,7 +20,7 @@ mod pdf;
 mod pixels;
 mod print;
 
-pub use animation::Animation;
+pub use animation::{Animation, has_extension};
 pub use axis::Axis;
 pub use draw::{label_lines, label_width};
 pub use error::PlotError;

@@ -46,10 +46,7 @@ impl Sheet {
         let title = |k: usize| {
             let row = self.row_titles.get(k / columns);
             let column = self.panels.get(k % columns).map(|panel| &panel.title);
-            let both = row
-                .into_iter()
-                .chain(column)
-                .filter(|title| !title.is_empty());
+            let both = row.into_iter().chain(column).filter(|one| !one.is_empty());
             both.cloned().collect::<Vec<_>>().join(", ")
         };
         let panels = self.panels.iter().enumerate().map(|(k, panel)| Panel {

@@ -125,8 +125,8 @@ impl Table {
         }
     }
 
-    /// As plain text in aligned columns: texts left-aligned, numbers right-aligned. Names stand above them unless all are
-    /// empty.
+    /// As plain text in aligned columns: texts left-aligned, numbers right-aligned; with the names of columns, unless
+    /// all are empty.
     pub fn text(&self) -> String {
         let mut lines = self.lines();
         if self.heads.iter().all(|head| head.name.is_empty()) {

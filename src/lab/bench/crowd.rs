@@ -109,8 +109,7 @@ impl Crowd {
     fn places(&self, seed: u64) -> Vec<Vector> {
         let spacing = (2.0 / (self.density * 3.0_f64.sqrt())).sqrt();
         let height = 0.75_f64.sqrt() * spacing;
-        let wanted = (f64::from(self.agents) * 0.75_f64.sqrt()).sqrt().round();
-        let columns = (wanted as u32).max(1);
+        let columns = ((f64::from(self.agents) * 0.75_f64.sqrt()).sqrt().round() as u32).max(1);
         let rows = self.agents.div_ceil(columns);
         let row = |k: u32| {
             let shift = 0.5 * spacing * f64::from(k % 2);

@@ -19,7 +19,6 @@ impl Plan {
 
     /// The number of frames in which `agents` agents take about `agent_frames` steps together, between two limits.
     pub fn frames(&self, agents: u32, agent_frames: u64, [fewest, most]: [u64; 2]) -> u64 {
-        let usual = (agent_frames / u64::from(agents)).clamp(fewest, most);
-        self.choose(usual, 5)
+        self.choose((agent_frames / u64::from(agents)).clamp(fewest, most), 5)
     }
 }

@@ -210,11 +210,11 @@ impl Sizes {
         ["shortest", "quickest"].map(|choice| {
             say(&format!("office floor, {choice} ways"));
             let profile = format!("walk+sph, {choice}");
-            let simulation = office::settled(self.corridors, self.leaving, choice)?;
+            let crowd = office::settled(self.corridors, self.leaving, choice)?;
             Ok(Started::settled(
                 "office floor",
                 &profile,
-                simulation,
+                crowd,
                 self.leaving,
             ))
         })
@@ -360,8 +360,7 @@ fn picture(rows: &[Divided]) -> Sheet {
         // About three digits.
         let ms = row.ms_per_frame.median;
         let digits = (2.0 - ms.log10().floor()).clamp(0.0, 3.0) as usize;
-        let text = format!("{ms:.digits$}");
-        marks.push(Mark::Text([middle, 105.0], text, BLACK));
+        marks.push(Mark::Text([middle, 105.0], format!("{ms:.digits$}"), BLACK));
     }
     let stages = Stage::ALL.iter().enumerate().rev();
     marks.extend(stages.map(|(k, stage)| key(color(k), &stage.name().replace('_', " "))));

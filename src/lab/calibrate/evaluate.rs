@@ -67,9 +67,7 @@ impl Evaluator<'_> {
     /// The targets of these sets, in order.
     pub fn targets(&self, sets: &[Set]) -> Vec<&Target> {
         let targets = self.calibration.targets.iter();
-        targets
-            .filter(|target| sets.contains(&target.set))
-            .collect()
+        targets.filter(|one| sets.contains(&one.set)).collect()
     }
 
     /// Computes the runs of all points for these targets and seeds that are not in the store: first those of the shard,

@@ -59,9 +59,7 @@ impl<'a> Reader<'a> {
             .map_err(|error| Problem::new(place, error))?;
         let case = named(suite, id).map_err(|reason| Problem::new(at("case"), reason))?;
         let checks = case.checks.iter();
-        let measured: Vec<&Check> = checks
-            .filter(|check| check.expected.is_measured())
-            .collect();
+        let measured: Vec<&Check> = checks.filter(|one| one.expected.is_measured()).collect();
         let all = measured.iter().map(|check| ValueKeys::of(&check.name));
         let by_default: Vec<ValueKeys> = all.collect();
         let values = keys.values.as_ref().unwrap_or(&by_default);
@@ -193,11 +191,7 @@ impl<'a> Reader<'a> {
         }
         let changed = base.with(settings, self.memory);
         let case = changed.map_err(|error| refused(place, error.to_string()))?;
-        if let Some(known) = self
-            .scenes
-            .iter()
-            .position(|scene| scene.case.key == case.key)
-        {
+        if let Some(known) = self.scenes.iter().position(|one| one.case.key == case.key) {
             return Ok(known);
         }
         let read = case.scenario();

@@ -207,10 +207,7 @@ impl Report<'_> {
             let row = searched.clone().map(|b| of.correlation(a, b));
             row.collect::<Vec<_>>()
         });
-        let names = of
-            .parameters
-            .iter()
-            .map(|parameter| parameter.name.as_str());
+        let names = of.parameters.iter().map(|one| one.name.as_str());
         let screening = self.found.screened.as_ref().map(|screened| {
             json!({"parameters": names.collect::<Vec<_>>(), "misfit": screened.misfit, "values": screened.values})
         });

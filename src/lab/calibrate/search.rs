@@ -144,10 +144,7 @@ impl Stages<'_> {
         });
         let first = self.trials.len();
         self.trials.extend(trials);
-        Ok(self.trials[first..]
-            .iter()
-            .map(|trial| trial.misfit)
-            .collect())
+        Ok(self.trials[first..].iter().map(|one| one.misfit).collect())
     }
 
     /// The number of the best trial: the first of the smallest misfit.
@@ -278,10 +275,9 @@ impl Stages<'_> {
                     .runs
                     .iter()
                     .zip(&low.samples[target].runs);
-                let both =
-                    runs.filter_map(|(high, low)| Some((high.as_ref().ok()?, low.as_ref().ok()?)));
-                let differences =
-                    both.map(|(&high, &low)| (ratio(high, of) - ratio(low, of)) / width);
+                let differences = runs
+                    .filter_map(|(high, low)| Some((high.as_ref().ok()?, low.as_ref().ok()?)))
+                    .map(|(&high, &low)| (ratio(high, of) - ratio(low, of)) / width);
                 MeanStd::of(&differences.collect::<Vec<f64>>())
             });
             let differences: Vec<Option<MeanStd>> = changes.collect();

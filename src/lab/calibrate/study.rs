@@ -200,9 +200,7 @@ impl Calibration {
     /// The coordinates of the starting point.
     pub fn start(&self) -> Vec<f64> {
         let parameters = self.parameters.iter();
-        parameters
-            .map(|parameter| parameter.coordinate(parameter.start))
-            .collect()
+        parameters.map(|one| one.coordinate(one.start)).collect()
     }
 
     /// The numbers of the parameters that are not frozen.

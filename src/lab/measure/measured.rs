@@ -92,8 +92,7 @@ pub fn measure<E: From<MeasureError>>(
     let mut history = History::new(options, tracks.ids.len());
     let mut overview = overview(tracks, chosen.clone());
     let mut seen = vec![false; tracks.ids.len()];
-    let first = tracks.frames[chosen.start];
-    let mut safety = Safety::new(tracks, first, options.sample_every);
+    let mut safety = Safety::new(tracks, tracks.frames[chosen.start], options.sample_every);
     for batch in batches(tracks, chosen) {
         let frames = batch.clone().into_par_iter();
         let found: Vec<Found> = frames.map(|k| rows.of_frame(k)).collect();

@@ -76,9 +76,8 @@ impl Results {
                     person.density_from_walls,
                     person.density_of_others,
                 ];
-                let when = (moment.frame, moment.time, person.id);
                 (
-                    when,
+                    (moment.frame, moment.time, person.id),
                     [person.position.x, person.position.y],
                     velocity,
                     speed,

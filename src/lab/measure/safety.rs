@@ -149,7 +149,6 @@ impl Safety {
 /// The people of a frame with their surroundings.
 fn local(moment: &Moment, site: &Site) -> Vec<Local> {
     let all = moment.people.iter();
-    let moving = all.map(|person| (person.number, person.position, person.velocity));
-    let people = People::new(moving);
+    let people = People::new(all.map(|person| (person.number, person.position, person.velocity)));
     people.local(&people.at(site), true)
 }

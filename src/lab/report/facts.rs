@@ -189,8 +189,7 @@ pub fn stuck(run: &Summary) -> Vec<Block> {
 /// The values of a measurement in words, with their definitions.
 pub fn measured(measurement: &Measurement, run: &Summary) -> Vec<Fact> {
     let fact = |quantity: Quantity| {
-        let known = run.metrics.get(&quantity.name);
-        let value = match known {
+        let value = match run.metrics.get(&quantity.name) {
             Some(value) if value.is_u64() => value.to_string(),
             Some(value) => value
                 .as_f64()

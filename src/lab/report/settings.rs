@@ -90,6 +90,5 @@ pub fn changes_profile(scenario: &Scenario) -> bool {
 }
 
 fn is_equal(value: &str, default: &str) -> bool {
-    let numbers = [value, default].map(|text| text.parse::<f64>().ok());
-    matches!(numbers, [Some(a), Some(b)] if a == b)
+    matches!([value, default].map(|text| text.parse::<f64>().ok()), [Some(a), Some(b)] if a == b)
 }

@@ -88,11 +88,7 @@ impl<'a> Moment<'a> {
 
 /// The mean of the known values.
 fn mean(values: &[f64]) -> Option<f64> {
-    let known: Vec<f64> = values
-        .iter()
-        .copied()
-        .filter(|value| !value.is_nan())
-        .collect();
+    let known: Vec<f64> = values.iter().copied().filter(|one| !one.is_nan()).collect();
     MeanStd::of(&known).map(|of| of.mean)
 }
 

@@ -26,12 +26,11 @@ pub fn bar(text: &str, map: &ColorMap) -> Value {
         format!("{r:02x}{g:02x}{b:02x}")
     });
     let ticks = round::ticks([first, last], MOST_STEPS);
-    let numbers = ticks.into_iter().map(|at| json!([at, round::text(at)]));
     json!({
         "text": text,
         "range": [first, last],
         "colors": colors.collect::<String>(),
-        "ticks": numbers.collect::<Vec<_>>(),
+        "ticks": ticks.into_iter().map(|at| json!([at, round::text(at)])).collect::<Vec<_>>(),
     })
 }
 

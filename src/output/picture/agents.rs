@@ -110,9 +110,7 @@ pub fn trails(picture: &Picture) -> Vec<Mark> {
     };
     let many = picture.crowd.len() > MANY;
     let style = Style::full(TRAIL, if many { THIN } else { TRAIL_WIDTH }, "");
-    let lines = trails
-        .lines()
-        .map(|line| line.into_iter().map(xy).collect());
+    let lines = trails.lines().map(|one| one.into_iter().map(xy).collect());
     lines.map(|line| Mark::Line(line, style.clone())).collect()
 }
 

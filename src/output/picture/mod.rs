@@ -250,8 +250,7 @@ impl<'a> Picture<'a> {
         let journeys = &self.scene.journeys;
         let places = journeys.places.iter().flat_map(scenery::lines);
         let zones = journeys.zones.iter().flat_map(|zone| zone.area.points());
-        let points = places.chain(zones.copied()).chain([min, max]);
-        bounds(points).unwrap_or([min, max])
+        bounds(places.chain(zones.copied()).chain([min, max])).unwrap_or([min, max])
     }
 
     fn panel(&self, frame: &Frame, paths: Option<&Paths>) -> Panel {

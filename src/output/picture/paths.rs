@@ -119,8 +119,7 @@ impl Paths {
         let chosen = candidates.iter().step_by(every);
         let mut from: Vec<Vector> = chosen.map(|&i| agents.position[i]).collect();
         if from.is_empty() {
-            let lines = scene.entrances.iter().flat_map(|entrance| entrance.line);
-            from.extend(entries.chain(lines));
+            from.extend(entries.chain(scene.entrances.iter().flat_map(|entrance| entrance.line)));
         }
         from.retain(|&p| self.ways.is_open(p, self.to));
         far_apart(&from)

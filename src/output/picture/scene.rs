@@ -139,8 +139,7 @@ pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark
         if let Kind::Queue(queue) = &place.kind {
             let spots = scenery::spots(queue).into_iter().map(xy);
             marks.push(Mark::dots(spots, Style::broken(usual, 2.0, "")));
-            let front = [xy(queue.path[0])];
-            marks.push(Mark::dots(front, Style::full(usual, 3.2, "")));
+            marks.push(Mark::dots([xy(queue.path[0])], Style::full(usual, 3.2, "")));
         }
         let closed = if is_closed { " (closed)" } else { "" };
         let text = scenery::named(place.kind.name(), &place.name) + closed;

@@ -234,8 +234,7 @@ pub fn ways(simulation: &Simulation) -> Result<Work, &'static str> {
         let frame = simulation.frame();
         let mut agents = frame.agents.clone();
         held.resize(agents.entered() as usize, (None, Vector::zeros()));
-        let by_agent = agents.id.iter().map(|&id| held[id as usize]);
-        (agents.route, agents.aim) = by_agent.unzip();
+        (agents.route, agents.aim) = agents.id.iter().map(|&id| held[id as usize]).unzip();
         agents.lacks_routes = agents.route.contains(&None);
         let spent = seconds(|| agents.follow(&ways, frame.clock.is_coarse(), seed));
         let routes = agents.route.into_iter().zip(agents.aim);
@@ -260,6 +259,5 @@ fn open_floor(positions: &[Vector], goals: Vec<Vector>) -> Option<Ways> {
         exterior: Ring::new(corners).ok()?,
         holes: Vec::new(),
     };
-    let floor = Floor::new(&[area], 0.0).ok()?;
-    Ways::new(floor, &[], goals).ok()
+    Ways::new(Floor::new(&[area], 0.0).ok()?, &[], goals).ok()
 }

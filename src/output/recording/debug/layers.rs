@@ -137,10 +137,9 @@ fn labels(open: &[Open]) -> Data {
 }
 
 fn kernels(open: &[Open]) -> Data {
-    let half_sizes = open.iter().map(|agent| [agent.support_radius as f32; 2]);
     let circles = Ellipses2D::update_fields()
         .with_centers(positions(open))
-        .with_half_sizes(half_sizes);
+        .with_half_sizes(open.iter().map(|agent| [agent.support_radius as f32; 2]));
     (Box::new(circles), open.len())
 }
 

@@ -84,8 +84,8 @@ pub fn forces_on(simulation: &Simulation, debug: &DebugAgents) -> Vec<(u32, Vec<
     let open = debug.open(simulation, &[]).into_iter();
     let forces = open.map(|agent| {
         let total = Vector::from(agent.breakdown.acceleration);
-        let own = terms.iter().map(|term| agent.force(&term.name));
-        let all = std::iter::once(total).chain(own);
+        let of_terms = terms.iter().map(|term| agent.force(&term.name));
+        let all = std::iter::once(total).chain(of_terms);
         (agent.breakdown.id, all.collect())
     });
     forces.collect()

@@ -131,11 +131,10 @@ fn crowds(
         .with(bars::DENSITY)
         .add(properties, &shown);
     let speed_title = format!("Speed {} m/s", range(options.speed_range));
-    let speed = View::of_crowd(&speed_title, content)
+    let mut beside = View::of_crowd(&speed_title, content)
         .with(bars::SPEED)
         .colored_by(crowd::SPEED_COLORS)
         .add(properties, &shown);
-    let mut beside = speed;
     if content.has_stages {
         let stage = View::of_crowd("Stage of the journey", content)
             .colored_by(crowd::STAGE_COLORS)
@@ -272,8 +271,7 @@ fn plots(content: &Content) -> ContainerLike {
     let time = plot("Computing time", "/stats/time");
     let charts = content.lines.iter();
     let lines = charts.map(|of| plot(of.title, &format!("/{}", of.series)));
-    let first = places.into_iter().chain(lines);
-    Tabs::new(first.chain([motion, crowd, time])).into()
+    Tabs::new(places.into_iter().chain(lines).chain([motion, crowd, time])).into()
 }
 
 fn document(name: &str, entity: &str) -> ContainerLike {

@@ -52,9 +52,8 @@ impl Marked<'_> {
             REGION,
             regions.collect(),
         )?;
-        let paths = self.lines.iter().map(|line| vec![line.start, line.end]);
         let lines = (1..)
-            .zip(paths)
+            .zip(self.lines.iter().map(|line| vec![line.start, line.end]))
             .map(|(k, line)| (format!("line {k}"), line));
         log_named((stream, names), "measured_lines", LINE, lines.collect())
     }

@@ -46,8 +46,7 @@ pub fn log(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
         return Ok(());
     };
     let numbers = ways.floor.mesh.triangles().iter().flat_map(|t| t.corners);
-    let corners = numbers.map(|k| ways.floor.mesh.point(k));
-    let [low, high] = bounds(corners).unwrap_or_default();
+    let [low, high] = bounds(numbers.map(|k| ways.floor.mesh.point(k))).unwrap_or_default();
     let grid = Grid::over([low, high], PIXEL.max((high - low).max() / SIDE));
     for (entity, to) in destinations(scene) {
         log_field(stream, entity, &WayField::new(ways, to, grid))?;
