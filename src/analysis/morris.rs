@@ -38,8 +38,9 @@ impl Trajectories {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let (mut points, mut changed) = (Vec::new(), Vec::new());
         for _ in 0..count {
-            let levels = (0..dimension).map(|_| rng.random_range(0..LEVELS));
-            let mut levels: Vec<u8> = levels.collect();
+            let mut levels: Vec<u8> = (0..dimension)
+                .map(|_| rng.random_range(0..LEVELS))
+                .collect();
             let mut order: Vec<usize> = (0..dimension).collect();
             for k in (1..dimension).rev() {
                 order.swap(k, rng.random_range(0..=k));

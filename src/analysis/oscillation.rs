@@ -216,8 +216,8 @@ pub fn correlation_lengths(
         let count = products.len() as f64;
         (count > 0.0).then(|| products.iter().sum::<f64>() / count)
     };
-    let power = mean((0..boxes.len()).filter_map(|k| product(k, k)).collect());
-    let power = power.filter(|&power| power > 0.0);
+    let square = mean((0..boxes.len()).filter_map(|k| product(k, k)).collect());
+    let power = square.filter(|&power| power > 0.0);
     let along = |step: usize, place: fn(usize, usize) -> usize, count: usize| {
         let power = power?;
         let at = |distance: usize| {

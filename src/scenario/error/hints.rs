@@ -18,6 +18,15 @@ const UNITS: [(&[&str], &str, f64); 12] = [
     (&["%"], "a share of 1", 1e-2),
     (&["P/m²", "P/m2", "/m²", "/m2", "1/m²"], "P/m²", 1.0),
 ];
+/// Words of other languages, with those of JSON.
+const WORDS: [(&str, &str); 6] = [
+    ("True", "true"),
+    ("False", "false"),
+    ("None", "null"),
+    ("TRUE", "true"),
+    ("FALSE", "false"),
+    ("NULL", "null"),
+];
 
 /// What to write in place of a value of another type than expected; empty if that is not clear. `said` is serde's
 /// message, and `given` the text that it quotes.
@@ -96,23 +105,25 @@ pub fn of_syntax(text: &str, line: usize, column: usize) -> Option<String> {
         .chars()
         .take_while(|c| c.is_alphanumeric() || *c == '_')
         .collect();
-    let known = [
-        ("True", "true"),
-        ("False", "false"),
-        ("None", "null"),
-        ("TRUE", "true"),
-        ("FALSE", "false"),
-        ("NULL", "null"),
-    ];
-    if let Some((_, right)) = known.into_iter().find(|(given, _)| *given == word) {
+    of_word(&word).or_else(|| of_character(whole, from, &word))
+}
+
+/// What to write in place of a word of another language.
+fn of_word(word: &str) -> Option<String> {
+    if let Some((_, right)) = WORDS.iter().find(|(given, _)| *given == word) {
         return Some(format!("`{word}` is not JSON: write {right}"));
     }
-    if matches!(word.to_lowercase().as_str(), "nan" | "inf" | "infinity") {
-        return Some(format!(
+    matches!(word.to_lowercase().as_str(), "nan" | "inf" | "infinity").then(|| {
+        format!(
             "`{}` is no number of JSON: leave the key out for its default",
-            shown(&word)
-        ));
-    }
+            shown(word)
+        )
+    })
+}
+
+/// What to write in place of the character at `from` in a line, at which `word` begins; the word may be empty.
+fn of_character(line: &str, from: usize, word: &str) -> Option<String> {
+    let here = &line[from..];
     match here.chars().next()? {
         '\'' => Some("JSON has double quotes: write \"…\" in place of '…'".to_owned()),
         '“' | '”' | '„' | '«' | '»' => {
@@ -128,11 +139,11 @@ pub fn of_syntax(text: &str, line: usize, column: usize) -> Option<String> {
                 u32::from(c)
             ))
         }
-        c if c.is_ascii_digit() && is_decimal(whole, from) => {
+        c if c.is_ascii_digit() && is_decimal(line, from) => {
             Some("JSON has decimal points: write 1.5, not 1,5".to_owned())
         }
         _ if !word.is_empty() && here[word.len()..].trim_start().starts_with(':') => {
-            Some(format!("keys stand in double quotes: \"{}\"", shown(&word)))
+            Some(format!("keys stand in double quotes: \"{}\"", shown(word)))
         }
         _ => None,
     }

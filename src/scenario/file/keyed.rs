@@ -57,11 +57,11 @@ impl Kinds {
                 Some(format!("has no {noun}: give one of {}", all.join(", ")))
             }
             [_, _, ..] if is_listed => {
-                let each = known.iter().map(|key| match given[*key].as_object() {
+                let objects = known.iter().map(|key| match given[*key].as_object() {
                     Some(keys) if keys.is_empty() => format!("{{\"{key}\": {{}}}}"),
                     _ => format!("{{\"{key}\": …}}"),
                 });
-                let each: Vec<String> = each.collect();
+                let each: Vec<String> = objects.collect();
                 Some(format!("one {noun} per object: [{}]", each.join(", ")))
             }
             [_, _, ..] => {

@@ -128,11 +128,12 @@ fn collect(
         return;
     }
     let schema = resolved(schema);
-    let ways = ["anyOf", "oneOf"].map(|key| schema[key].as_array());
-    let ways = || ways.into_iter().flatten().flatten();
+    let lists = ["anyOf", "oneOf"].map(|key| schema[key].as_array());
+    let ways = || lists.into_iter().flatten().flatten();
     // The keys that tell alternatives apart.
-    let keyed = ways().filter_map(|way| way["required"][0].as_str());
-    let keyed: Vec<&str> = keyed.collect();
+    let keyed: Vec<&str> = ways()
+        .filter_map(|way| way["required"][0].as_str())
+        .collect();
     let keys = || schema["properties"].as_object().into_iter().flatten();
     let mut line = Vec::new();
     if !keyed.is_empty() {

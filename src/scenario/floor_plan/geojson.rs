@@ -162,8 +162,7 @@ fn parts(geometry: &Geometry) -> Parts<&[Vec<Position>]> {
     match &geometry.value {
         GeometryValue::Polygon { coordinates } => Parts::Polygon(coordinates),
         GeometryValue::MultiPolygon { coordinates } => {
-            let polygons = coordinates.iter().map(Vec::as_slice);
-            let polygons = polygons.map(Parts::Polygon);
+            let polygons = coordinates.iter().map(Vec::as_slice).map(Parts::Polygon);
             Parts::Several("polygon", polygons.collect())
         }
         GeometryValue::GeometryCollection { geometries } => {

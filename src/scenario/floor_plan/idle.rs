@@ -46,9 +46,11 @@ impl<'a> Boxed<'a> {
 
     /// Whether it lies wholly off these floors.
     fn is_off(&self, floors: &[Self]) -> Result<bool, FloorPlanError> {
-        let near = floors.iter().filter(|floor| floor.overlaps(self));
-        let near = near.map(|floor| floor.shape.area());
-        let near: Vec<Area> = near.collect::<Result<_, _>>()?;
+        let near: Vec<Area> = floors
+            .iter()
+            .filter(|floor| floor.overlaps(self))
+            .map(|floor| floor.shape.area())
+            .collect::<Result<_, _>>()?;
         if near.is_empty() {
             return Ok(true);
         }
@@ -128,8 +130,7 @@ fn holes_off(floors: &[Boxed]) -> Result<Vec<String>, FloorPlanError> {
     if holes.is_empty() {
         return Ok(Vec::new());
     }
-    let outlines = floors.iter().map(|floor| outline(floor.shape, 0));
-    let outlines: Vec<Shape> = outlines.collect();
+    let outlines: Vec<Shape> = floors.iter().map(|floor| outline(floor.shape, 0)).collect();
     let outlines: Vec<Boxed> = outlines.iter().map(Boxed::new).collect();
     let mut off = Vec::new();
     for hole in &holes {

@@ -115,13 +115,15 @@ impl Shape {
             let points = ring.points();
             points.iter().zip(points.iter().cycle().skip(1))
         });
-        let crossings = edges.filter(|(a, b)| (a.y > y) != (b.y > y));
-        let crossings = crossings.map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y));
-        let mut crossings: Vec<f64> = crossings.collect();
+        let mut crossings: Vec<f64> = edges
+            .filter(|(a, b)| (a.y > y) != (b.y > y))
+            .map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y))
+            .collect();
         crossings.sort_by(f64::total_cmp);
         let width = |side: &&[f64]| side[1] - side[0];
-        let widest = crossings.chunks_exact(2);
-        let widest = widest.max_by(|a, b| width(a).total_cmp(&width(b)));
+        let widest = crossings
+            .chunks_exact(2)
+            .max_by(|a, b| width(a).total_cmp(&width(b)));
         let [left, right] = widest.map_or([low.x, high.x], |side| [side[0], side[1]]);
         (Vector::new(0.5 * (left + right), y), right - left)
     }

@@ -38,13 +38,13 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
         for subroom in room.children().filter(|node| node.has_tag_name("subroom")) {
             let place = format!("room {}, subroom {}", id(room), id(subroom));
             let side = [id(room), id(subroom)];
-            let own = doors.iter().filter(|door| door.sides.contains(&side));
-            let own: Vec<Path> = own.map(|door| door.path.clone()).collect();
-            let walls = subroom
+            let doors_of_room = doors.iter().filter(|door| door.sides.contains(&side));
+            let own: Vec<Path> = doors_of_room.map(|door| door.path.clone()).collect();
+            let walls: Vec<Path> = subroom
                 .children()
-                .filter(|node| node.has_tag_name("polygon"));
-            let walls = walls.map(|wall| vertices(wall, &place, meters));
-            let walls: Vec<Path> = walls.collect::<Result<_, _>>()?;
+                .filter(|node| node.has_tag_name("polygon"))
+                .map(|wall| vertices(wall, &place, meters))
+                .collect::<Result<_, _>>()?;
             shapes.push(Shape {
                 rings: vec![outline(walls, own, &place)?],
                 place: place.clone(),

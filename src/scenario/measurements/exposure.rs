@@ -93,8 +93,8 @@ impl Measure for Exposure {
                     "s",
                     format!("longest time without a break with at least one person {above}"),
                 ),
-            ];
-            let alarm = alarm.map(|(what, unit, meaning)| {
+            ]
+            .map(|(what, unit, meaning)| {
                 Quantity::new(format!("{}_{short}_{what}", self.name()), unit, &meaning)
             });
             exposed(&above, &short).into_iter().chain(alarm)

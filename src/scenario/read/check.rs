@@ -262,8 +262,8 @@ fn add_pushes(scene: &mut Scene, events: &[file::Event]) -> Result<(), Problem> 
     for (k, event) in events.iter().enumerate() {
         let place = format!("events[{k}]");
         let given = (event.for_secs, event.region);
-        let changes = [&event.open, &event.close, &event.release];
-        let changes = changes.into_iter().flatten().count();
+        let given_changes = [&event.open, &event.close, &event.release];
+        let changes = given_changes.into_iter().flatten().count();
         let (lasting, corners) = match (given, changes) {
             ((Some(lasting), Some(corners)), 0) => (lasting, corners),
             ((None, None), 1) => continue,

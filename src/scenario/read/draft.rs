@@ -59,13 +59,14 @@ impl Draft {
         if document.is_object() && !settings.is_empty() {
             inputs.without = Some(document.clone());
             for setting in settings {
-                let path = setting.apply(&mut document);
-                let path = path.map_err(|problem| setting.refused(problem))?;
+                let path = setting
+                    .apply(&mut document)
+                    .map_err(|problem| setting.refused(problem))?;
                 inputs.settings.push((path, setting.clone()));
             }
         }
-        let draft = Self::of(document, Path::new(file));
-        let mut draft = draft.map_err(|problem| inputs.blame(problem))?;
+        let mut draft =
+            Self::of(document, Path::new(file)).map_err(|problem| inputs.blame(problem))?;
         inputs.check_replaced()?;
         draft.need.text = text.len() as u64;
         Ok(Self { inputs, ..draft })
@@ -99,8 +100,9 @@ impl Draft {
         let inputs = std::mem::take(&mut self.inputs);
         let ends = self.ends(inputs.without.as_ref());
         let late = self.late(ends);
-        let scenario = self.built(Path::new(&inputs.file), ends[1]);
-        let mut scenario = scenario.map_err(|problem| inputs.blame(problem))?;
+        let mut scenario = self
+            .built(Path::new(&inputs.file), ends[1])
+            .map_err(|problem| inputs.blame(problem))?;
         scenario.notes.extend(late);
         scenario.notes.extend(late::idle(&scenario.scene, ends));
         scenario.notes.extend(late::short(&scenario.scene, ends));

@@ -16,8 +16,8 @@ const TOUCHING: f64 = 5.4;
 /// The notes on a complete scene.
 pub fn notes(keys: &File, scene: &Scene) -> Vec<String> {
     let trapped = trapped(keys, scene).into_iter();
-    let all = trapped.chain(at_once(scene)).chain(overfull(scene));
-    let all = all.chain(overrun(scene)).chain(in_walls(keys, scene));
+    let of_people = trapped.chain(at_once(scene)).chain(overfull(scene));
+    let all = of_people.chain(overrun(scene)).chain(in_walls(keys, scene));
     all.chain(narrow(scene)).collect()
 }
 
@@ -37,8 +37,9 @@ fn trapped(keys: &File, scene: &Scene) -> Option<String> {
             || stages.any(|stage| stage.places.iter().any(|k| place(k).is_exit()))
     };
     let used = scene.agents.iter().map(|agent| agent.group);
-    let used = used.chain(scene.sources.iter().map(|source| source.group));
-    let mut used = used.chain(scene.entrances.iter().map(|entrance| entrance.group));
+    let mut used = used
+        .chain(scene.sources.iter().map(|source| source.group))
+        .chain(scene.entrances.iter().map(|entrance| entrance.group));
     let is_closed = scene.period.is_none() && !used.any(|k| leaves(group(scene, k)));
     (keys.stop.when_empty && is_closed).then(|| {
         "stop.when_empty: no agent can leave, so the run ends at its duration: give groups a journey to an exit, or a \
@@ -68,8 +69,9 @@ fn at_once(scene: &Scene) -> Option<String> {
 fn overfull(scene: &Scene) -> Vec<String> {
     let sent = |number: usize| {
         let waits = |agent: &&NewAgent| {
-            let journey = group(scene, agent.group).journey;
-            let journey = journey.map(|k| &scene.journeys.journeys[usize::from(k)]);
+            let journey = group(scene, agent.group)
+                .journey
+                .map(|k| &scene.journeys.journeys[usize::from(k)]);
             let mut stages = journey.into_iter().flat_map(|journey| &journey.stages);
             stages.any(|stage| stage.places == [number as u16])
         };
@@ -126,13 +128,13 @@ fn in_walls(keys: &File, scene: &Scene) -> Option<String> {
             .map(|&k| scene.walls.wall(k).nearest_point(p).point);
         nearest.map(|point| (point - p).norm()).reduce(f64::min)
     };
-    let starts = keys.agents.iter().enumerate().filter_map(|(k, agent)| {
+    let near_walls = keys.agents.iter().enumerate().filter_map(|(k, agent)| {
         let p = Vector::from(agent.position);
         let radius = agent.radius.unwrap_or(RADIUS_RANGE[0]);
         let distance = distance(p, 0.5 * radius)?;
         Some((k, distance, radius))
     });
-    let starts: Vec<(usize, f64, f64)> = starts.collect();
+    let starts: Vec<(usize, f64, f64)> = near_walls.collect();
     let (k, distance, radius) = starts.first()?;
     let more = match starts.len() - 1 {
         0 => String::new(),

@@ -98,9 +98,10 @@ impl Need {
         let parts = [
             (output, "to write files"),
             (listed, "to list walls near agents"),
-        ];
-        let parts = parts.into_iter().filter(|&(bytes, _)| bytes > 0);
-        let parts = parts.map(|(bytes, what)| format!("{} of it {what}", in_units(bytes)));
+        ]
+        .into_iter()
+        .filter(|&(bytes, _)| bytes > 0)
+        .map(|(bytes, what)| format!("{} of it {what}", in_units(bytes)));
         let parts = match parts.collect::<Vec<_>>().join(", ") {
             none if none.is_empty() => none,
             some => format!(" ({some})"),
@@ -137,13 +138,14 @@ impl Need {
         let sources = file.sources.iter().map(entering).enumerate();
         let through = |entrance: &Entrance| entrance.most(last_entry);
         let entrances = file.entrances.iter().map(through).enumerate();
-        let initial = there.map(|one| ("from", one));
-        let initial = initial.chain(agents.map(|one| ("agents", one)));
-        let initial = initial.chain(grids.map(|one| ("grids", one)));
-        let initial = initial.chain(crowds.map(|one| ("crowds", one)));
-        let later = sources.map(|one| ("sources", one));
-        let later = later.chain(entrances.map(|one| ("entrances", one)));
-        let later = later
+        let initial = there
+            .map(|one| ("from", one))
+            .chain(agents.map(|one| ("agents", one)))
+            .chain(grids.map(|one| ("grids", one)))
+            .chain(crowds.map(|one| ("crowds", one)));
+        let later = sources
+            .map(|one| ("sources", one))
+            .chain(entrances.map(|one| ("entrances", one)))
             .chain(late.map(|one| ("from", one)))
             .map(|one| (false, one));
         for (is_initial, (place, (k, agents))) in initial.map(|one| (true, one)).chain(later) {

@@ -149,8 +149,8 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
         );
         return Err(Problem::new(LENGTH, reason));
     }
-    let measured = keys.measurements.iter().enumerate();
-    let measured = measured.flat_map(|(k, measurement)| {
+    let measurements = keys.measurements.iter().enumerate();
+    let measured = measurements.flat_map(|(k, measurement)| {
         let places = measurement.places().into_iter();
         places.map(move |(key, place)| (format!("measurements[{k}].{key}"), place.bounds()))
     });
@@ -158,8 +158,8 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
         let [min, max] = bounds(zone.area.points().iter().copied()).unwrap_or_default();
         (format!("zones: `{}`: area", zone.name), Region { min, max })
     });
-    let pushed = scene.pushes.iter();
-    let pushed = pushed.map(|push| (format!("events: `{}`: region", push.name), push.region));
+    let pushes = scene.pushes.iter();
+    let pushed = pushes.map(|push| (format!("events: `{}`: region", push.name), push.region));
     for (place, Region { min, max }) in measured.chain(pushed).chain(zones) {
         let [from, to] = period.ends();
         if period.along(min) < from || period.along(max) > to {

@@ -29,13 +29,13 @@ pub fn note(walls: &Walls) -> Option<String> {
 /// few slits; `None` without one.
 pub fn apart(walls: &Walls) -> Option<String> {
     let found = slits(walls);
-    let named = found.iter().take(NAMED).map(|(middle, width)| {
-        let width = format!("{:.1}", 1e3 * width);
-        let width = width.trim_end_matches(".0");
+    let texts = found.iter().take(NAMED).map(|(middle, width)| {
+        let text = format!("{:.1}", 1e3 * width);
+        let width = text.trim_end_matches(".0");
         let [x, y] = [middle.x, middle.y].map(to_centimeters);
         format!("{width} mm apart at ({x:.2}, {y:.2})")
     });
-    let named: Vec<String> = named.collect();
+    let named: Vec<String> = texts.collect();
     let rest = match found.len().saturating_sub(NAMED) {
         0 => String::new(),
         more => format!(" and {more} more"),

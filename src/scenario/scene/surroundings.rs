@@ -20,8 +20,8 @@ const MOST_WALLS: u64 = 1_000_000;
 
 /// The number of walls of a scene: one per corner, in a periodic scene of three periods.
 pub fn walls(file: &File) -> u64 {
-    let rings = file.obstacles.iter().flat_map(Outline::rings);
-    let rings = rings.chain(file.walkable_area.iter().flatten().flatten());
+    let bodies = file.obstacles.iter().flat_map(Outline::rings);
+    let rings = bodies.chain(file.walkable_area.iter().flatten().flatten());
     let corners: u64 = rings.map(|ring| ring.0.len() as u64).sum();
     corners * if file.periodic.is_some() { 3 } else { 1 }
 }
@@ -66,8 +66,9 @@ pub fn surroundings(file: &File) -> Result<Surroundings, Problem> {
     let mut solids = Vec::with_capacity(file.obstacles.len() + 1);
     let mut copies = Vec::new();
     for (k, given) in file.obstacles.iter().enumerate() {
-        let bodies = obstacle(given, period.as_ref()).under(&format!("{OBSTACLES}[{k}]"))?;
-        let mut bodies = bodies.into_iter();
+        let mut bodies = obstacle(given, period.as_ref())
+            .under(&format!("{OBSTACLES}[{k}]"))?
+            .into_iter();
         solids.extend(bodies.next());
         copies.extend(bodies);
     }
@@ -76,8 +77,8 @@ pub fn surroundings(file: &File) -> Result<Surroundings, Problem> {
         let exits = file.exits.iter().map(|exit| (exit.line, BEHIND));
         let entrances = file.entrances.iter();
         let entrances = entrances.map(|entrance| (entrance.line.0, WIDE_AT));
-        let doors = exits.chain(entrances);
-        let doors: Vec<Door> = doors
+        let doors: Vec<Door> = exits
+            .chain(entrances)
             .map(|(line, reach)| (line.map(Vector::from), reach))
             .collect();
         let around = walls_round(polygons, &doors, period.as_ref()).under(WALKABLE_AREA)?;
@@ -129,14 +130,14 @@ fn obstacle(given: &Outline, period: Option<&Period>) -> Result<Vec<Polygon>, Pr
     if let Some(period) = period {
         return periodic::bodies(&rings(given.rings())?, period);
     }
-    let polygon = match given {
+    let made = match given {
         Outline::Ring(ring) => Polygon::new(points(ring)?.into_iter().map(Into::into).collect()),
         Outline::Rings(given) => {
             let area = FloorPlan::obstacle(&rings(given)?).map_err(Problem::from)?;
             Polygon::filling(area)
         }
     };
-    let polygon = polygon.map_err(|error| Problem::new("", error.to_string()))?;
+    let polygon = made.map_err(|error| Problem::new("", error.to_string()))?;
     Ok(vec![polygon])
 }
 

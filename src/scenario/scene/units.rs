@@ -116,10 +116,9 @@ fn slowed(scene: &Scene) -> Option<String> {
 
 /// Notes on masses in kilograms.
 fn masses(keys: &File, scene: &Scene) -> Vec<String> {
-    let own = keys.agents.iter().enumerate();
-    let own = own.filter_map(|(k, agent)| Some((agent.mass?, format!("agents[{k}].mass"))));
-    let groups = scene.groups.iter();
-    let groups = groups.filter_map(|group| {
+    let agents = keys.agents.iter().enumerate();
+    let own = agents.filter_map(|(k, agent)| Some((agent.mass?, format!("agents[{k}].mass"))));
+    let groups = scene.groups.iter().filter_map(|group| {
         let mass = group.traits.mass.as_ref()?.mean();
         Some((mass, format!("mass of {}", shown(&group.name))))
     });
@@ -136,16 +135,15 @@ fn masses(keys: &File, scene: &Scene) -> Vec<String> {
 
 /// Notes on flows through exits and entrances that are given per minute or hour.
 fn flows(keys: &File) -> Vec<String> {
-    let exits = keys.exits.iter().enumerate();
-    let exits = exits.filter_map(|(k, exit)| {
+    let exits = keys.exits.iter().enumerate().filter_map(|(k, exit)| {
         Some((
             format!("exits[{k}].most_per_sec"),
             exit.most_per_sec?,
             exit.line,
         ))
     });
-    let entrances = keys.entrances.iter().enumerate();
-    let entrances = entrances.filter_map(|(k, entrance)| {
+    let numbered = keys.entrances.iter().enumerate();
+    let entrances = numbered.filter_map(|(k, entrance)| {
         Some((
             format!("entrances[{k}].per_sec"),
             entrance.per_sec?,
@@ -200,10 +198,9 @@ fn zones(scene: &Scene) -> impl Iterator<Item = String> {
 
 /// The mean radii that are not those of people, with their places.
 fn radii(keys: &File, scene: &Scene) -> Vec<(f64, String)> {
-    let own = keys.agents.iter().enumerate();
-    let own = own.filter_map(|(k, agent)| Some((agent.radius?, format!("agents[{k}].radius"))));
-    let groups = scene.groups.iter();
-    let groups = groups.filter_map(|group| {
+    let agents = keys.agents.iter().enumerate();
+    let own = agents.filter_map(|(k, agent)| Some((agent.radius?, format!("agents[{k}].radius"))));
+    let groups = scene.groups.iter().filter_map(|group| {
         let radius = group.traits.radius.as_ref()?.mean();
         Some((radius, format!("radius of {}", shown(&group.name))))
     });

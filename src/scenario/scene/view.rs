@@ -116,8 +116,8 @@ fn surroundings(scene: &Scene) -> Region {
         .sources
         .iter()
         .flat_map(|source| [source.grid.min, source.grid.max]);
-    let lines = scene.entrances.iter();
-    let lines = lines.flat_map(|entrance| [entrance.line[0], entrance.line[1], entrance.goal]);
+    let entrances = scene.entrances.iter();
+    let lines = entrances.flat_map(|entrance| [entrance.line[0], entrance.line[1], entrance.goal]);
     let margin = Vector::new(MARGIN, MARGIN);
     let [low, high] = bounds(corners.chain(agents).chain(sources).chain(lines)).unwrap_or_default();
     let period = scene.period;

@@ -80,8 +80,8 @@ fn part_alone(blend: &Blend) -> f64 {
     if blend.rvo().is_some() {
         return ALONE_RVO;
     }
-    let scales = blend.steps().iter();
-    let scales = scales.map(|step| step.profile.contact.wall_contact_scale);
+    let steps = blend.steps().iter();
+    let scales = steps.map(|step| step.profile.contact.wall_contact_scale);
     ALONE * scales.fold(LEAST_ALONE, f64::max)
 }
 

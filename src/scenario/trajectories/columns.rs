@@ -36,8 +36,8 @@ pub fn columns(path: &Path, wanted: &[&str], tracks: &Tracks) -> Result<Vec<Colu
         true => csv_names(path)?,
         false => sqlite_names(path),
     };
-    let names = names.into_iter();
     let names: Vec<String> = names
+        .into_iter()
         .filter(|name| !OTHERS.contains(&name.as_str()))
         .collect();
     let read = |name: &&String| wanted.contains(&name.as_str()) || *name == "radius";
@@ -89,8 +89,8 @@ fn in_order(rows: Vec<Row>, count: usize, tracks: &Tracks) -> Vec<Vec<f64>> {
 }
 
 fn reader(path: &Path) -> Result<csv::Reader<File>, ReadError> {
-    let file = File::open(path);
-    let file = file.map_err(|error| ReadError::file(path, format!("cannot be read: {error}")))?;
+    let opened = File::open(path);
+    let file = opened.map_err(|error| ReadError::file(path, format!("cannot be read: {error}")))?;
     let mut builder = csv::ReaderBuilder::new();
     builder
         .comment(Some(b'#'))
@@ -101,30 +101,33 @@ fn reader(path: &Path) -> Result<csv::Reader<File>, ReadError> {
 
 fn csv_names(path: &Path) -> Result<Vec<String>, ReadError> {
     let mut reader = reader(path)?;
-    let header = reader.headers();
-    let header = header.map_err(|error| ReadError::file(path, error.to_string()))?;
+    let header = reader
+        .headers()
+        .map_err(|error| ReadError::file(path, error.to_string()))?;
     Ok(header.iter().map(str::to_owned).collect())
 }
 
 fn csv_rows(path: &Path, names: &[&str]) -> Result<Vec<Row>, ReadError> {
     let mut reader = reader(path)?;
     let failed = |error: csv::Error| ReadError::file(path, error.to_string());
-    let header = reader.headers().map_err(failed)?.clone();
-    let header: Vec<&str> = header.iter().collect();
+    let headers = reader.headers().map_err(failed)?.clone();
+    let header: Vec<&str> = headers.iter().collect();
     let found = Columns::named(&header).map_err(|problem| ReadError::file(path, problem))?;
     let Some((columns, _)) = found else {
         return Ok(Vec::new());
     };
-    let places = names.iter();
-    let places = places.filter_map(|name| header.iter().position(|own| own == name));
-    let places: Vec<usize> = places.collect();
+    let places: Vec<usize> = names
+        .iter()
+        .filter_map(|name| header.iter().position(|own| own == name))
+        .collect();
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(failed)?;
         let cells: Vec<&str> = record.iter().collect();
         let line = record.position().map_or(0, csv::Position::line);
-        let entry = columns.entry(&cells, line);
-        let entry = entry.map_err(|problem| ReadError::line(path, line, problem))?;
+        let entry = columns
+            .entry(&cells, line)
+            .map_err(|problem| ReadError::line(path, line, problem))?;
         let values = places.iter().map(|&place| {
             let value = cells.get(place).and_then(|cell| cell.parse().ok());
             value.unwrap_or(f64::NAN)

@@ -41,8 +41,8 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
         ..Contents::default()
     };
     let mass = if has_mass { "mass" } else { "1.0" };
-    let query = format!("SELECT frame, id, pos_x, pos_y, {mass} FROM trajectory_data");
-    let mut query = connection.prepare(&query).map_err(failed)?;
+    let text = format!("SELECT frame, id, pos_x, pos_y, {mass} FROM trajectory_data");
+    let mut query = connection.prepare(&text).map_err(failed)?;
     let mut rows = query.query([]).map_err(failed)?;
     let mut line = 0;
     let most = path
@@ -55,8 +55,7 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
                 "trajectory_data has more rows than fit into the file: it is damaged, or a view";
             return Err(ReadError::file(path, problem));
         }
-        let entry = entry(row, line);
-        let entry = entry.map_err(|what| {
+        let entry = entry(row, line).map_err(|what| {
             ReadError::file(path, format!("row {line} of trajectory_data: {what}"))
         })?;
         contents.entries.push(entry);
@@ -78,11 +77,11 @@ pub fn values(path: &Path, names: &[&str]) -> Result<Vec<(i64, i64, Vec<f64>)>, 
             .iter()
             .map(|name| format!("\"{}\"", name.replace('"', "\"\"")));
         let columns: Vec<String> = quoted.collect();
-        let query = format!(
+        let text = format!(
             "SELECT id, frame, {} FROM trajectory_data",
             columns.join(", ")
         );
-        let mut query = connection.prepare(&query)?;
+        let mut query = connection.prepare(&text)?;
         let row = |row: &Row| {
             let values = (2..2 + names.len()).map(|column| {
                 Ok(match row.get_ref(column)? {
