@@ -150,9 +150,9 @@ fn collect(
         let rings = rings(polygon, &place)?;
         shapes.push(Shape {
             place,
-            name: None,
             rings,
             is_obstacle,
+            ..Shape::default()
         });
         Ok(())
     })

@@ -40,13 +40,13 @@ impl<'a> Boxed<'a> {
             return Ok(false);
         }
         let [own, around] = [self.shape.area()?, other.shape.area()?];
-        let may_be = around.contains(Shape::middle(&own).0);
-        Ok(may_be && free(&[rings(&[own])], &rings(&[around]))?.is_empty())
+        let may_be = around.contains(Shape::middle(own).0);
+        Ok(may_be && free(&[rings([own])], &rings([around]))?.is_empty())
     }
 
     /// Whether it lies wholly off these floors.
     fn is_off(&self, floors: &[Self]) -> Result<bool, FloorPlanError> {
-        let near: Vec<Area> = floors
+        let near: Vec<&Area> = floors
             .iter()
             .filter(|floor| floor.overlaps(self))
             .map(|floor| floor.shape.area())
@@ -55,9 +55,9 @@ impl<'a> Boxed<'a> {
             return Ok(true);
         }
         let own = self.shape.area()?;
-        let middle = Shape::middle(&own).0;
+        let middle = Shape::middle(own).0;
         let is_on = near.iter().any(|floor| floor.contains(middle));
-        Ok(!is_on && free(&[rings(&[own]), rings(&near)], &Vec::new())?.is_empty())
+        Ok(!is_on && free(&[rings([own]), rings(near)], &Vec::new())?.is_empty())
     }
 }
 
@@ -121,7 +121,7 @@ fn holes_off(floors: &[Boxed]) -> Result<Vec<String>, FloorPlanError> {
             holes: own,
         } = shape.area()?;
         let is_apart = |hole: &Ring| !hole.points().iter().any(|&p| exterior.contains(p));
-        let apart = (1..).zip(&own).filter(|(_, hole)| is_apart(hole));
+        let apart = (1..).zip(own).filter(|(_, hole)| is_apart(hole));
         holes.extend(apart.map(|(k, _)| Shape {
             place: part(&shape.place, "hole", k - 1),
             ..outline(shape, k)
@@ -145,9 +145,9 @@ fn holes_off(floors: &[Boxed]) -> Result<Vec<String>, FloorPlanError> {
 fn outline(shape: &Shape, k: usize) -> Shape {
     Shape {
         place: shape.place.clone(),
-        name: None,
         rings: vec![shape.rings[k].clone()],
         is_obstacle: shape.is_obstacle,
+        ..Shape::default()
     }
 }
 

@@ -142,9 +142,8 @@ impl FloorPlan {
         let numbered = polygons.iter().enumerate();
         let shapes = numbered.map(|(k, rings)| Shape {
             place: format!("[{k}]"),
-            name: None,
             rings: rings.clone(),
-            is_obstacle: false,
+            ..Shape::default()
         });
         Self::of(&shapes.collect::<Vec<_>>())
     }
@@ -155,12 +154,11 @@ impl FloorPlan {
     /// Those of [`Ring::new`](engine::geometry::Ring::new) and [`Polygon::filling`], with coordinates.
     pub fn obstacle(rings: &[Vec<[f64; 2]>]) -> Result<Area, FloorPlanError> {
         let shape = Shape {
-            place: String::new(),
-            name: None,
             rings: rings.to_vec(),
             is_obstacle: true,
+            ..Shape::default()
         };
-        shape.area()
+        shape.area().cloned()
     }
 
     /// Notes on obstacles off the floor, and on floors inside other floors. Each polygon has its place in messages, its
@@ -173,9 +171,9 @@ impl FloorPlan {
     ) -> Result<Vec<String>, FloorPlanError> {
         let shapes = polygons.map(|(place, rings, is_obstacle)| Shape {
             place,
-            name: None,
             rings,
             is_obstacle,
+            ..Shape::default()
         });
         idle::notes(&shapes.collect::<Vec<_>>())
     }
@@ -211,11 +209,11 @@ impl FloorPlan {
         let mut names = Vec::new();
         for shape in shapes {
             let area = shape.area()?;
-            names.extend(shape.label(&area));
+            names.extend(shape.label(area));
             if shape.is_obstacle {
-                obstacles.push(area);
+                obstacles.push(area.clone());
             } else {
-                walkable.push(area);
+                walkable.push(area.clone());
             }
         }
         let [width, height] = extent(walkable.iter().chain(&obstacles));

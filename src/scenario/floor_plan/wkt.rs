@@ -144,8 +144,7 @@ fn shape(polygon: &Polygon<f64>, place: String) -> Shape {
     Shape {
         place,
         rings: polygon.rings().iter().map(points).collect(),
-        name: None,
-        is_obstacle: false,
+        ..Shape::default()
     }
 }
 

@@ -49,7 +49,7 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
                 rings: vec![outline(walls, own, &place)?],
                 place: place.clone(),
                 name: caption(room),
-                is_obstacle: false,
+                ..Shape::default()
             });
             for obstacle in elements(subroom, "obstacle") {
                 for polygon in elements(obstacle, "polygon") {
@@ -59,6 +59,7 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
                         place,
                         name: caption(obstacle),
                         is_obstacle: true,
+                        ..Shape::default()
                     });
                 }
             }

@@ -15,8 +15,9 @@ use crate::keys::people::{Behavior, People};
 use crate::keys::profiles::{ProfileChoice, ProfileName};
 use crate::keys::shapes::region;
 use crate::read::draft::{Draft, Inputs};
+use crate::read::plans::Plans;
 use crate::read::scenario::Scenario;
-use crate::read::{curves, data, late, plans, preset};
+use crate::read::{curves, data, late, preset};
 use crate::scene::need::Need;
 use crate::scene::people::Population;
 use crate::scene::surroundings::Surroundings;
@@ -40,14 +41,16 @@ impl Draft {
         without_schema(&mut document)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut notes = Vec::new();
-        let mut plans = plans::fill(&mut document, folder, &mut notes)?;
-        plans.extend(curves::fill(&mut document, folder)?);
+        let (plans, mut files) = Plans::take(&mut document, folder, &mut notes)?;
+        files.extend(curves::fill(&mut document, folder)?);
         let mut keys = Self::check_keys(&document)?;
-        plans.extend(data::fill(&mut document, &mut keys, folder, &mut notes)?);
+        plans.enter(&mut keys);
+        files.extend(data::fill(&mut document, &mut keys, folder, &mut notes)?);
         let need = Need::of(&keys, &numerics::first_clock(&keys), duration(&keys))?;
         Ok(Self {
             document,
             plans,
+            files,
             keys,
             notes,
             need,
@@ -110,63 +113,87 @@ impl Draft {
     /// Checks relations between values and places the agents. The name of the file `path` is the default name of the
     /// scenario; the file without settings has its end at `last`, seconds, or the run if that is later.
     pub(super) fn built(self, path: &Path, last: f64) -> Result<Scenario, Problem> {
+        periodic::check_keys(&self.keys)?;
+        let around = Surroundings::of(&self.keys, self.plans.walkable.as_deref())?;
+        let without_effect = surroundings::without_effect(&self.keys);
         // A part of the plan without effect is the likely cause of a place off the floor.
-        let of_plan = surroundings::without_effect(&self.keys).unwrap_or_default();
-        self.built_on_floor(path, last).map_err(|problem| {
-            match of_plan
-                .first()
-                .filter(|_| problem.reason.contains("outside of the walkable area"))
-            {
-                Some(note) => Problem::new(problem.path, format!("{}; {note}", problem.reason)),
-                None => problem,
+        let cause = without_effect.as_ref().ok().and_then(|notes| notes.first());
+        let populated = self.populated(around).map_err(|problem| match cause {
+            Some(note) if problem.reason.contains("outside of the walkable area") => {
+                Problem::new(problem.path, format!("{}; {note}", problem.reason))
             }
-        })
+            _ => problem,
+        })?;
+        self.checked(path, last, populated, without_effect)
     }
 
-    fn built_on_floor(self, path: &Path, last: f64) -> Result<Scenario, Problem> {
-        let keys = &self.keys;
-        periodic::check_keys(keys)?;
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let Surroundings { solids, behind } = surroundings::surroundings(keys)?;
-        let mut scene = empty_scene(keys, solids);
-        scene.behind.clone_from(&behind);
+    /// The scene with its people.
+    fn populated(&self, around: Surroundings) -> Result<Populated, Problem> {
+        let (keys, behind) = (&self.keys, &around.behind);
+        let mut scene = empty_scene(keys, around.solids);
+        scene.behind.clone_from(behind);
         let default = ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned()));
         let choice = keys.profile.as_ref().unwrap_or(&default);
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
-        let mut notes = self.notes;
-        scene.journeys = journeys::journeys(keys, (&scene.walls, &behind), &mut notes)?;
-        let entered = Population::new(keys, &blend, &behind, &mut scene).enter();
+        let mut notes = Vec::new();
+        scene.journeys = journeys::journeys(keys, (&scene.walls, behind), &mut notes)?;
+        let entered = Population::new(keys, &blend, behind, &mut scene).enter();
         let (of_people, items) =
             entered.map_err(|problem| meant::clearer(problem, &self.document))?;
         notes.extend(of_people);
-        let duration_secs = duration(keys);
-        overcrowded::check(keys, (&scene, &items), duration_secs)?;
+        overcrowded::check(keys, (&scene, &items), duration(keys))?;
         measurements::check(&keys.measurements, &scene.journeys.journeys)?;
         off_floor::check(keys, &scene)?;
-        off_floor::check_waypoints(&scene, &behind)?;
-        off_floor::check_starts(&items.origins(keys, &scene), &behind)?;
+        off_floor::check_waypoints(&scene, behind)?;
+        off_floor::check_starts(&items.origins(keys, &scene), behind)?;
         add_pushes(&mut scene, &keys.events)?;
         periodic::check(keys, &scene)?;
         scene.routing = Routing {
             choice: keys.route_choice.unwrap_or_default(),
             knowledge: keys.knowledge,
         };
-        ways::add((keys, &items), &mut scene, &behind, &mut notes)?;
+        ways::add((keys, &items), &mut scene, behind, &mut notes)?;
+        Ok(Populated {
+            passage_width: widest::passable(&items.origins(keys, &scene)),
+            profile_name: blend.name,
+            scene,
+            notes,
+        })
+    }
+
+    /// The scenario, with its numerical settings, its view, and notes on all of it.
+    fn checked(
+        self,
+        path: &Path,
+        last: f64,
+        populated: Populated,
+        without_effect: Result<Vec<String>, Problem>,
+    ) -> Result<Scenario, Problem> {
+        let (keys, mut document) = (&self.keys, self.document);
+        let Populated {
+            mut scene,
+            profile_name,
+            passage_width,
+            notes: of_people,
+        } = populated;
         scene.integrator = keys.integrator.for_scene(&scene);
         scene.clock = numerics::clock_for(keys, &scene)?;
         let placed = scene.agents.len() as u64;
         let fewer = self.need.initial.saturating_sub(placed); // crowds with a density
         let entering = self.need.entering - fewer;
+        let mut notes = [self.notes, of_people].concat();
         notes.extend(doubts::notes(keys, &scene, entering, last));
         notes.extend(slits::note(&scene.walls));
-        notes.extend(surroundings::without_effect(keys)?);
+        notes.extend(without_effect?);
         let view = view::of(keys.view.as_ref(), &scene).under("view")?;
         notes.extend(view::unseen(keys, &view.region));
+        self.plans.write(keys, &mut document);
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         Ok(Scenario {
             name: keys.name.clone().unwrap_or_else(|| stem.into_owned()),
             description: keys.description.clone().unwrap_or_default(),
             seed: seed(keys),
-            duration_secs,
+            duration_secs: duration(keys),
             stop: keys.stop.clone(),
             measurements: keys.measurements.clone(),
             view,
@@ -177,14 +204,25 @@ impl Draft {
                 None => spread(entering),
             },
             entering,
-            profile_name: blend.name,
-            document: self.document,
-            files: self.plans,
+            profile_name,
+            document,
+            files: self.files,
             notes,
-            passage_width: widest::passable(&items.origins(keys, &scene)),
+            passage_width,
             scene,
         })
     }
+}
+
+/// A scene with its people and their ways.
+struct Populated {
+    scene: Scene,
+    /// The name of the default profile.
+    profile_name: String,
+    /// See [`Scenario::passage_width`].
+    passage_width: Option<f64>,
+    /// Notes on them.
+    notes: Vec<String>,
 }
 
 /// Checks the keys that groups have in common, those of behavior by themselves.

@@ -52,28 +52,32 @@ pub struct Surroundings {
     pub behind: Vec<Vec<Vector>>,
 }
 
-/// The obstacles and the walkable area of a file.
-pub fn surroundings(file: &File) -> Result<Surroundings, Problem> {
-    let walls = walls(file);
-    if walls > MOST_WALLS {
-        let reason = format!(
-            "{walls} corners in total; at most {MOST_WALLS} are allowed: leave out unimportant corners"
-        );
-        return Err(Problem::new(OBSTACLES, reason));
-    }
-    let period = file.periodic.map(Period::from);
-    let mut behind = Vec::new();
-    let mut solids = Vec::with_capacity(file.obstacles.len() + 1);
-    let mut copies = Vec::new();
-    for (k, given) in file.obstacles.iter().enumerate() {
-        let mut bodies = obstacle(given, period.as_ref())
-            .under(&format!("{OBSTACLES}[{k}]"))?
-            .into_iter();
-        solids.extend(bodies.next());
-        copies.extend(bodies);
-    }
-    solids.extend(copies);
-    if let Some(polygons) = &file.walkable_area {
+impl Surroundings {
+    /// The obstacles and the walkable area of a file; `united` is the union of that area, if it is known.
+    pub fn of(file: &File, united: Option<&[Area]>) -> Result<Self, Problem> {
+        let walls = walls(file);
+        if walls > MOST_WALLS {
+            let reason = format!(
+                "{walls} corners in total; at most {MOST_WALLS} are allowed: leave out unimportant corners"
+            );
+            return Err(Problem::new(OBSTACLES, reason));
+        }
+        let period = file.periodic.map(Period::from);
+        let mut solids = Vec::with_capacity(file.obstacles.len() + 1);
+        let mut copies = Vec::new();
+        for (k, given) in file.obstacles.iter().enumerate() {
+            let bodies = obstacle(given, period.as_ref()).under(&format!("{OBSTACLES}[{k}]"))?;
+            let mut bodies = bodies.into_iter();
+            solids.extend(bodies.next());
+            copies.extend(bodies);
+        }
+        solids.extend(copies);
+        let Some(polygons) = &file.walkable_area else {
+            return Ok(Self {
+                solids,
+                behind: Vec::new(),
+            });
+        };
         let exits = file.exits.iter().map(|exit| (exit.line, BEHIND));
         let entrances = file.entrances.iter();
         let entrances = entrances.map(|entrance| (entrance.line.0, WIDE_AT));
@@ -81,19 +85,20 @@ pub fn surroundings(file: &File) -> Result<Surroundings, Problem> {
             .chain(entrances)
             .map(|(line, reach)| (line.map(Vector::from), reach))
             .collect();
-        let around = walls_round(polygons, &doors, period.as_ref()).under(WALKABLE_AREA)?;
+        let around = walls_round(polygons, united, &doors, period.as_ref()).under(WALKABLE_AREA)?;
         if let Some(period) = &period {
             periodic::check_ends(&around.solids, period).under(WALKABLE_AREA)?;
         }
         solids.extend(around.solids);
-        behind = around.behind;
+        Ok(Self { solids, ..around })
     }
-    Ok(Surroundings { solids, behind })
 }
 
-/// The solid around `polygons` and their copies, open behind the lines of exits and entrances.
+/// The solid around `polygons` and their copies, open behind the lines of exits and entrances. `united` is the union of
+/// the polygons, if it is known.
 fn walls_round(
     polygons: &[Vec<GivenRing>],
+    united: Option<&[Area]>,
     doors: &[Door],
     period: Option<&Period>,
 ) -> Result<Surroundings, Problem> {
@@ -102,16 +107,19 @@ fn walls_round(
         let copies = rings(polygon).and_then(|rings| periodic::copies(&rings, period));
         given.extend(copies.under(&format!("[{k}]"))?);
     }
-    let mut plan = FloorPlan::walkable(&given).map_err(Problem::from)?;
-    let openings = openings(&plan.walkable, doors);
+    let union = |given: &[_]| FloorPlan::walkable(given).map(|plan| plan.walkable);
+    let mut floor = match united.filter(|_| period.is_none()) {
+        Some(united) => united.to_vec(),
+        None => union(&given).map_err(Problem::from)?,
+    };
+    let openings = openings(&floor, doors);
     if !openings.is_empty() {
         given.extend(openings.iter().map(|opening| vec![opening.ring(-OVERLAP)]));
-        plan = FloorPlan::walkable(&given).map_err(Problem::from)?;
+        floor = union(&given).map_err(Problem::from)?;
     }
+    let solid = Polygon::enclosing(floor).map_err(|error| Problem::new("", error.to_string()))?;
     Ok(Surroundings {
-        solids: plan
-            .solids()
-            .map_err(|error| Problem::new("", error.to_string()))?,
+        solids: vec![solid],
         behind: openings.iter().map(Opening::outline).collect(),
     })
 }
