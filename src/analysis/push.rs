@@ -72,9 +72,8 @@ impl Pushed {
     /// straight line through the times at which people reach them; `None` if it reaches fewer than four people, or
     /// does not run forward.
     pub fn front(row: &[Self]) -> Option<f64> {
-        let lines: Vec<f64> = (0..THRESHOLDS.len())
-            .filter_map(|k| slowness(row, |one| one.reached[k]))
-            .collect();
+        let slopes = (0..THRESHOLDS.len()).filter_map(|k| slowness(row, |one| one.reached[k]));
+        let lines: Vec<f64> = slopes.collect();
         let median = (!lines.is_empty()).then(|| Range::of(&lines).median);
         median.filter(|slowness| *slowness > 0.0).map(f64::recip)
     }
@@ -122,9 +121,8 @@ fn break_of(values: &[f64]) -> Option<f64> {
     let rest = without_line(values);
     let candidates = (1..PARTS * (values.len() - 1)).map(|part| part as f64 / PARTS as f64);
     let gained = candidates.map(|at| {
-        let kink: Vec<f64> = (0..values.len())
-            .map(|k| (k as f64 - at).max(0.0))
-            .collect();
+        let bent = (0..values.len()).map(|k| (k as f64 - at).max(0.0));
+        let kink: Vec<f64> = bent.collect();
         let hinge = without_line(&kink);
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let own = product(&hinge, &hinge);
@@ -147,7 +145,6 @@ fn without_line(values: &[f64]) -> Vec<f64> {
     let all = || values.iter().enumerate();
     let moment = all().map(|(k, value)| off(k) * value).sum::<f64>();
     let rise = moment / all().map(|(k, _)| off(k).powi(2)).sum::<f64>();
-    all()
-        .map(|(k, value)| value - mean - rise * off(k))
-        .collect()
+    let rest = all().map(|(k, value)| value - mean - rise * off(k));
+    rest.collect()
 }

@@ -18,15 +18,6 @@ const UNITS: [(&[&str], &str, f64); 12] = [
     (&["%"], "a share of 1", 1e-2),
     (&["P/m²", "P/m2", "/m²", "/m2", "1/m²"], "P/m²", 1.0),
 ];
-/// Words of other languages, with those of JSON.
-const WORDS: [(&str, &str); 6] = [
-    ("True", "true"),
-    ("False", "false"),
-    ("None", "null"),
-    ("TRUE", "true"),
-    ("FALSE", "false"),
-    ("NULL", "null"),
-];
 
 /// What to write in place of a value of another type than expected; empty if that is not clear. `said` is serde's
 /// message, and `given` the text that it quotes.
@@ -101,24 +92,26 @@ pub fn of_syntax(text: &str, line: usize, column: usize) -> Option<String> {
             "JSON has no comments: remove it, or put the words into `description`".to_owned(),
         );
     }
-    let word: String = here
+    let letters = here
         .chars()
-        .take_while(|c| c.is_alphanumeric() || *c == '_')
-        .collect();
+        .take_while(|c| c.is_alphanumeric() || *c == '_');
+    let word: String = letters.collect();
     of_word(&word).or_else(|| of_character(whole, from, &word))
 }
 
 /// What to write in place of a word of another language.
 fn of_word(word: &str) -> Option<String> {
-    if let Some((_, right)) = WORDS.iter().find(|(given, _)| *given == word) {
-        return Some(format!("`{word}` is not JSON: write {right}"));
-    }
-    matches!(word.to_lowercase().as_str(), "nan" | "inf" | "infinity").then(|| {
-        format!(
-            "`{}` is no number of JSON: leave the key out for its default",
-            shown(word)
-        )
-    })
+    let right = match word {
+        "True" | "TRUE" => "true",
+        "False" | "FALSE" => "false",
+        "None" | "NULL" => "null",
+        _ if matches!(&*word.to_lowercase(), "nan" | "inf" | "infinity") => {
+            let advice = "is no number of JSON: leave the key out for its default";
+            return Some(format!("`{}` {advice}", shown(word)));
+        }
+        _ => return None,
+    };
+    Some(format!("`{word}` is not JSON: write {right}"))
 }
 
 /// What to write in place of the character at `from` in a line, at which `word` begins; the word may be empty.

@@ -131,9 +131,8 @@ fn collect(
     let lists = ["anyOf", "oneOf"].map(|key| schema[key].as_array());
     let ways = || lists.into_iter().flatten().flatten();
     // The keys that tell alternatives apart.
-    let keyed: Vec<&str> = ways()
-        .filter_map(|way| way["required"][0].as_str())
-        .collect();
+    let first_keys = ways().filter_map(|way| way["required"][0].as_str());
+    let keyed: Vec<&str> = first_keys.collect();
     let keys = || schema["properties"].as_object().into_iter().flatten();
     let mut line = Vec::new();
     if !keyed.is_empty() {

@@ -98,9 +98,8 @@ fn not_a_journey(document: &Value, name: &str) -> Option<String> {
     {
         return None;
     }
-    let (_, what) = PLACES
-        .into_iter()
-        .find(|(list, _)| has(document, list, name))?;
+    let mut places = PLACES.into_iter();
+    let (_, what) = places.find(|(list, _)| has(document, list, name))?;
     let name = shown(name);
     Some(format!(
         "`{name}` is {what}, not a journey: declare one that leads there, \"journeys\": [{{\"name\": \"way\", \

@@ -134,9 +134,8 @@ fn check_type(schema: &'static Value, value: &Value) -> Result<(), Problem> {
 
 /// The problem of a value in place of a list.
 fn not_a_list(schema: &'static Value, value: &Value) -> Problem {
-    let said = Vec::<Value>::deserialize(value)
-        .err()
-        .map_or(String::new(), |error| in_plain_words(&error.to_string()));
+    let error = Vec::<Value>::deserialize(value).err();
+    let said = error.map_or(String::new(), |error| in_plain_words(&error.to_string()));
     // The words already say this for objects.
     let is_element = !value.is_object() && fits(&schema["items"], value);
     let hint = match is_element {

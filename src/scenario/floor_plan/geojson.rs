@@ -148,12 +148,7 @@ fn collect(
 ) -> Result<(), FloorPlanError> {
     parts(geometry).polygons(place, &mut |polygon, place| {
         let rings = rings(polygon, &place)?;
-        shapes.push(Shape {
-            place,
-            rings,
-            is_obstacle,
-            ..Shape::default()
-        });
+        shapes.push(Shape::new(place, rings, is_obstacle));
         Ok(())
     })
 }

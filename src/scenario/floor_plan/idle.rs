@@ -46,11 +46,9 @@ impl<'a> Boxed<'a> {
 
     /// Whether it lies wholly off these floors.
     fn is_off(&self, floors: &[Self]) -> Result<bool, FloorPlanError> {
-        let near: Vec<&Area> = floors
-            .iter()
-            .filter(|floor| floor.overlaps(self))
-            .map(|floor| floor.shape.area())
-            .collect::<Result<_, _>>()?;
+        let beside = floors.iter().filter(|floor| floor.overlaps(self));
+        let areas = beside.map(|floor| floor.shape.area());
+        let near: Vec<&Area> = areas.collect::<Result<_, _>>()?;
         if near.is_empty() {
             return Ok(true);
         }
@@ -131,24 +129,19 @@ fn holes_off(floors: &[Boxed]) -> Result<Vec<String>, FloorPlanError> {
         return Ok(Vec::new());
     }
     let outlines: Vec<Shape> = floors.iter().map(|floor| outline(floor.shape, 0)).collect();
-    let outlines: Vec<Boxed> = outlines.iter().map(Boxed::new).collect();
+    let boxed: Vec<Boxed> = outlines.iter().map(Boxed::new).collect();
     let mut off = Vec::new();
     for hole in &holes {
-        if Boxed::new(hole).is_off(&outlines)? {
+        if Boxed::new(hole).is_off(&boxed)? {
             off.push(hole.place.clone());
         }
     }
     Ok(off)
 }
 
-/// Ring `k` of a polygon as one of its own.
+/// Ring `k` of a floor as a floor of its own.
 fn outline(shape: &Shape, k: usize) -> Shape {
-    Shape {
-        place: shape.place.clone(),
-        rings: vec![shape.rings[k].clone()],
-        is_obstacle: shape.is_obstacle,
-        ..Shape::default()
-    }
+    Shape::new(shape.place.clone(), vec![shape.rings[k].clone()], false)
 }
 
 /// The first place, and the number of the others.

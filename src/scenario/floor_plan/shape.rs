@@ -78,6 +78,16 @@ pub fn part(place: &str, kind: &str, k: usize) -> String {
 }
 
 impl Shape {
+    /// A polygon without a name of its own.
+    pub fn new(place: String, rings: Vec<Vec<[f64; 2]>>, is_obstacle: bool) -> Self {
+        Self {
+            place,
+            rings,
+            is_obstacle,
+            ..Self::default()
+        }
+    }
+
     /// The area between its rings.
     pub fn area(&self) -> Result<&Area, FloorPlanError> {
         let checked = self.checked.get_or_init(|| self.check());
@@ -125,15 +135,13 @@ impl Shape {
             let points = ring.points();
             points.iter().zip(points.iter().cycle().skip(1))
         });
-        let mut crossings: Vec<f64> = edges
-            .filter(|(a, b)| (a.y > y) != (b.y > y))
-            .map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y))
-            .collect();
+        let across = edges.filter(|(a, b)| (a.y > y) != (b.y > y));
+        let places = across.map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y));
+        let mut crossings: Vec<f64> = places.collect();
         crossings.sort_by(f64::total_cmp);
         let width = |side: &&[f64]| side[1] - side[0];
-        let widest = crossings
-            .chunks_exact(2)
-            .max_by(|a, b| width(a).total_cmp(&width(b)));
+        let pairs = crossings.chunks_exact(2);
+        let widest = pairs.max_by(|a, b| width(a).total_cmp(&width(b)));
         let [left, right] = widest.map_or([low.x, high.x], |side| [side[0], side[1]]);
         (Vector::new(0.5 * (left + right), y), right - left)
     }

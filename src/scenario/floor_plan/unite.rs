@@ -68,9 +68,8 @@ pub fn outlines(obstacles: &[Solid]) -> (Vec<Rings>, Rings) {
         .iter()
         .partition(|obstacle| obstacle.is_unbounded());
     let reversed = |ring: &[Vector]| ring.iter().rev().copied().collect();
-    let floors = unbounded
-        .iter()
-        .map(|floor| floor.rings().map(reversed).collect());
+    let outer = unbounded.iter();
+    let floors = outer.map(|floor| floor.rings().map(reversed).collect());
     let bodies = bounded.iter().flat_map(|obstacle| obstacle.rings());
     (floors.collect(), bodies.map(<[Vector]>::to_vec).collect())
 }

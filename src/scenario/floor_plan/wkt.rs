@@ -141,11 +141,8 @@ fn geometry(wkt: &Wkt<f64>) -> Geometry<&Polygon<f64>> {
 
 fn shape(polygon: &Polygon<f64>, place: String) -> Shape {
     let points = |ring: &LineString<f64>| ring.coords().iter().map(|c| [c.x, c.y]).collect();
-    Shape {
-        place,
-        rings: polygon.rings().iter().map(points).collect(),
-        ..Shape::default()
-    }
+    let rings = polygon.rings().iter().map(points).collect();
+    Shape::new(place, rings, false)
 }
 
 /// Areas as a `POLYGON`, or as a `MULTIPOLYGON` unless there is exactly one; holes are clockwise.

@@ -224,9 +224,8 @@ impl LineFlow {
                 let ([first, last], near) = (times[p], tracks.rounding());
                 (first - near..=last + near).contains(&time)
             };
-            let there = (0..times.len())
-                .filter(is_there)
-                .map(|p| (p as u32, tracks.place_at(p, time)));
+            let people = (0..times.len()).filter(is_there);
+            let there = people.map(|p| (p as u32, tracks.place_at(p, time)));
             let moment = Moment {
                 clock: &clock,
                 scene,

@@ -108,9 +108,8 @@ impl Openings {
         let length = distance + self::length(&course);
         if let (Some(second), Some(map)) = (course.get(1), ways.map_to(to)) {
             let bits = [first.x, first.y, second.x, second.y].map(f64::to_bits);
-            let rest = known
-                .entry((map, bits))
-                .or_insert_with(|| self.along(&course));
+            let entry = known.entry((map, bits));
+            let rest = entry.or_insert_with(|| self.along(&course));
             for &(k, beyond) in &*rest {
                 if found.iter().all(|&(other, _)| other != k) {
                     found.push((k, distance + beyond));
@@ -162,8 +161,6 @@ fn course(simulation: &Simulation, ways: &Ways, (i, to): (usize, Destination)) -
 }
 
 fn length(course: &[Vector]) -> f64 {
-    course
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).norm())
-        .sum()
+    let legs = course.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+    legs.sum()
 }

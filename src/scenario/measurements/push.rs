@@ -86,9 +86,8 @@ impl Push {
 
     fn results(&self, seen: &Seen) -> Vec<Option<f64>> {
         let people = seen.people.iter();
-        let mut row: Vec<Pushed> = people
-            .filter_map(|(_, places)| Pushed::of(places, seen.every))
-            .collect();
+        let pushed = people.filter_map(|(_, places)| Pushed::of(places, seen.every));
+        let mut row: Vec<Pushed> = pushed.collect();
         row.sort_by(|a, b| a.place.total_cmp(&b.place));
         let of_each = |value: fn(&Pushed) -> f64| {
             let row = &row;

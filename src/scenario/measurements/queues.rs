@@ -116,10 +116,8 @@ impl Queues {
     /// Observes the queues of a frame with the headways of its agents, by id: once every
     /// [`EVERY`](super::standing::EVERY) seconds.
     pub(super) fn observe(&mut self, headways: &[Option<Headway>], simulation: &Simulation) {
-        let openings = self
-            .openings
-            .take()
-            .unwrap_or_else(|| Openings::of(simulation.scene()));
+        let known = self.openings.take();
+        let openings = known.unwrap_or_else(|| Openings::of(simulation.scene()));
         let now = simulation.frame().clock.time();
         let slow = slow(headways, simulation, &openings);
         let mut waiting = waiting(&slow, simulation);
@@ -247,9 +245,8 @@ fn waiting(slow: &[Slow], simulation: &Simulation) -> Vec<Waiting> {
         aims.extend((!has_line(one.aim)).then_some((one.aim, one.length, k)));
     }
     aims.sort_by(|(aim, ..), (other, ..)| aim.order(other)); // stable
-    let openings = openings
-        .into_iter()
-        .map(|(opening, agents)| (Passage::Opening(opening), agents));
+    let pairs = openings.into_iter();
+    let openings = pairs.map(|(opening, agents)| (Passage::Opening(opening), agents));
     let aims = aims
         .chunk_by(|(aim, ..), (other, ..)| aim == other)
         .map(|agents| {
@@ -300,9 +297,8 @@ impl Waiting {
         let front = &slow[front];
         // Doors come first, then the narrower ones.
         let others = front.ahead.iter().filter(|&&(other, _)| other < opening);
-        let mut passages = others
-            .map(|&(other, away)| (Passage::Opening(other), away))
-            .chain([(Passage::Aim(front.aim), front.length)]);
+        let before = others.map(|&(other, away)| (Passage::Opening(other), away));
+        let mut passages = before.chain([(Passage::Aim(front.aim), front.length)]);
         passages.any(|(passage, away)| {
             let mut all = all.iter();
             all.find(|one| one.passage == passage)

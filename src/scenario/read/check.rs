@@ -19,6 +19,7 @@ use crate::read::plans::Plans;
 use crate::read::scenario::Scenario;
 use crate::read::{curves, data, late, preset};
 use crate::scene::need::Need;
+use crate::scene::origin::Items;
 use crate::scene::people::Population;
 use crate::scene::surroundings::Surroundings;
 use crate::scene::{
@@ -31,7 +32,7 @@ use engine::forces::push::PushForce;
 use engine::geometry::Polygon;
 use engine::math::{Vector, direction};
 use engine::period::Period;
-use engine::profile::Override;
+use engine::profile::{Blend, Override};
 use engine::scene::{Push, Routing, Scene};
 
 impl Draft {
@@ -113,80 +114,29 @@ impl Draft {
     /// Checks relations between values and places the agents. The name of the file `path` is the default name of the
     /// scenario; the file without settings has its end at `last`, seconds, or the run if that is later.
     pub(super) fn built(self, path: &Path, last: f64) -> Result<Scenario, Problem> {
-        periodic::check_keys(&self.keys)?;
-        let around = Surroundings::of(&self.keys, self.plans.walkable.as_deref())?;
-        let without_effect = surroundings::without_effect(&self.keys);
-        // A part of the plan without effect is the likely cause of a place off the floor.
-        let cause = without_effect.as_ref().ok().and_then(|notes| notes.first());
-        let populated = self.populated(around).map_err(|problem| match cause {
-            Some(note) if problem.reason.contains("outside of the walkable area") => {
-                Problem::new(problem.path, format!("{}; {note}", problem.reason))
-            }
-            _ => problem,
-        })?;
-        self.checked(path, last, populated, without_effect)
-    }
-
-    /// The scene with its people.
-    fn populated(&self, around: Surroundings) -> Result<Populated, Problem> {
-        let (keys, behind) = (&self.keys, &around.behind);
-        let mut scene = empty_scene(keys, around.solids);
-        scene.behind.clone_from(behind);
+        let keys = &self.keys;
+        periodic::check_keys(keys)?;
+        let Surroundings { solids, behind } = Surroundings::of(keys)?;
+        let without_effect = surroundings::without_effect(keys);
         let default = ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned()));
         let choice = keys.profile.as_ref().unwrap_or(&default);
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
-        let mut notes = Vec::new();
-        scene.journeys = journeys::journeys(keys, (&scene.walls, behind), &mut notes)?;
-        let entered = Population::new(keys, &blend, behind, &mut scene).enter();
-        let (of_people, items) =
-            entered.map_err(|problem| meant::clearer(problem, &self.document))?;
-        notes.extend(of_people);
-        overcrowded::check(keys, (&scene, &items), duration(keys))?;
-        measurements::check(&keys.measurements, &scene.journeys.journeys)?;
-        off_floor::check(keys, &scene)?;
-        off_floor::check_waypoints(&scene, behind)?;
-        off_floor::check_starts(&items.origins(keys, &scene), behind)?;
-        add_pushes(&mut scene, &keys.events)?;
-        periodic::check(keys, &scene)?;
-        scene.routing = Routing {
-            choice: keys.route_choice.unwrap_or_default(),
-            knowledge: keys.knowledge,
-        };
-        ways::add((keys, &items), &mut scene, behind, &mut notes)?;
-        Ok(Populated {
-            passage_width: widest::passable(&items.origins(keys, &scene)),
-            profile_name: blend.name,
-            scene,
-            notes,
-        })
-    }
-
-    /// The scenario, with its numerical settings, its view, and notes on all of it.
-    fn checked(
-        self,
-        path: &Path,
-        last: f64,
-        populated: Populated,
-        without_effect: Result<Vec<String>, Problem>,
-    ) -> Result<Scenario, Problem> {
-        let (keys, mut document) = (&self.keys, self.document);
-        let Populated {
-            mut scene,
-            profile_name,
-            passage_width,
-            notes: of_people,
-        } = populated;
+        let mut scene = empty_scene(keys, solids);
+        scene.behind = behind;
+        let mut notes = self.notes.clone();
+        let populated = self.populate(&mut scene, &blend, &mut notes);
+        let items = populated.map_err(|problem| likely_cause(problem, &without_effect))?;
         scene.integrator = keys.integrator.for_scene(&scene);
         scene.clock = numerics::clock_for(keys, &scene)?;
         let placed = scene.agents.len() as u64;
         let fewer = self.need.initial.saturating_sub(placed); // crowds with a density
         let entering = self.need.entering - fewer;
-        let mut notes = [self.notes, of_people].concat();
         notes.extend(doubts::notes(keys, &scene, entering, last));
         notes.extend(slits::note(&scene.walls));
         notes.extend(without_effect?);
         let view = view::of(keys.view.as_ref(), &scene).under("view")?;
         notes.extend(view::unseen(keys, &view.region));
+        let mut document = self.document;
         self.plans.write(keys, &mut document);
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         Ok(Scenario {
@@ -204,25 +154,52 @@ impl Draft {
                 None => spread(entering),
             },
             entering,
-            profile_name,
+            profile_name: blend.name,
             document,
             files: self.files,
             notes,
-            passage_width,
+            passage_width: widest::passable(&items.origins(keys, &scene)),
             scene,
         })
     }
+
+    /// Adds the places, the people and their ways to a scene, and checks that all lie on the floor.
+    fn populate(
+        &self,
+        scene: &mut Scene,
+        blend: &Blend,
+        notes: &mut Vec<String>,
+    ) -> Result<Items, Problem> {
+        let (keys, behind) = (&self.keys, &scene.behind.clone());
+        scene.journeys = journeys::journeys(keys, (&scene.walls, behind), notes)?;
+        let entered = Population::new(keys, blend, behind, scene).enter();
+        let (of_people, items) =
+            entered.map_err(|problem| meant::clearer(problem, &self.document))?;
+        notes.extend(of_people);
+        overcrowded::check(keys, (scene, &items), duration(keys))?;
+        measurements::check(&keys.measurements, &scene.journeys.journeys)?;
+        off_floor::check(keys, scene)?;
+        off_floor::check_waypoints(scene, behind)?;
+        off_floor::check_starts(&items.origins(keys, scene), behind)?;
+        add_pushes(scene, &keys.events)?;
+        periodic::check(keys, scene)?;
+        scene.routing = Routing {
+            choice: keys.route_choice.unwrap_or_default(),
+            knowledge: keys.knowledge,
+        };
+        ways::add((keys, &items), scene, behind, notes)?;
+        Ok(items)
+    }
 }
 
-/// A scene with its people and their ways.
-struct Populated {
-    scene: Scene,
-    /// The name of the default profile.
-    profile_name: String,
-    /// See [`Scenario::passage_width`].
-    passage_width: Option<f64>,
-    /// Notes on them.
-    notes: Vec<String>,
+/// A problem with its likely cause: for a place off the floor, a part of the plan without effect.
+fn likely_cause(problem: Problem, without_effect: &Result<Vec<String>, Problem>) -> Problem {
+    match without_effect.as_deref().unwrap_or_default().first() {
+        Some(note) if problem.reason.contains("outside of the walkable area") => {
+            Problem::new(problem.path, format!("{}; {note}", problem.reason))
+        }
+        _ => problem,
+    }
 }
 
 /// Checks the keys that groups have in common, those of behavior by themselves.
@@ -242,9 +219,8 @@ fn parsed<'a, T: Deserialize<'a>>(value: &'a Value) -> Result<T, Problem> {
 
 /// Removes `$schema`, by which editors find the schema.
 fn without_schema(document: &mut Value) -> Result<(), Problem> {
-    let given = document
-        .as_object_mut()
-        .and_then(|document| document.remove("$schema"));
+    let object = document.as_object_mut();
+    let given = object.and_then(|document| document.remove("$schema"));
     match given {
         None | Some(Value::String(_)) => Ok(()),
         Some(_) => {

@@ -61,9 +61,8 @@ impl Draft {
         if document.is_object() && !settings.is_empty() {
             inputs.without = Some(document.clone());
             for setting in settings {
-                let path = setting
-                    .apply(&mut document)
-                    .map_err(|problem| setting.refused(problem))?;
+                let applied = setting.apply(&mut document);
+                let path = applied.map_err(|problem| setting.refused(problem))?;
                 inputs.settings.push((path, setting.clone()));
             }
         }
@@ -102,9 +101,8 @@ impl Draft {
         let inputs = std::mem::take(&mut self.inputs);
         let ends = self.ends(inputs.without.as_ref());
         let late = self.late(ends);
-        let mut scenario = self
-            .built(Path::new(&inputs.file), ends[1])
-            .map_err(|problem| inputs.blame(problem))?;
+        let built = self.built(Path::new(&inputs.file), ends[1]);
+        let mut scenario = built.map_err(|problem| inputs.blame(problem))?;
         scenario.notes.extend(late);
         scenario.notes.extend(late::idle(&scenario.scene, ends));
         scenario.notes.extend(late::short(&scenario.scene, ends));
@@ -163,10 +161,8 @@ impl Inputs {
     /// The settings whose values differ from those in the file, as typed.
     fn changes(&self) -> Vec<String> {
         let differs = |(path, setting): &&(String, Setting)| {
-            let before = self
-                .without
-                .as_ref()
-                .and_then(|file| setting.value_in(file));
+            let file = self.without.as_ref();
+            let before = file.and_then(|file| setting.value_in(file));
             // Elements that were added to a list have no value in the file.
             path.ends_with(']') || before != Some(setting.value())
         };

@@ -45,11 +45,6 @@ fn filled(keys: &[&'static str], given: Map<String, Value>) -> Map<String, Value
     let defaults =
         missing.filter_map(|key| Some(((*key).to_owned(), property(key).get("default")?.clone())));
     let mut all: Map<String, Value> = defaults.collect();
-    all.extend(
-        given
-            .clone()
-            .into_iter()
-            .filter(|(_, value)| !value.is_null()),
-    );
+    all.extend(given.into_iter().filter(|(_, value)| !value.is_null()));
     all
 }

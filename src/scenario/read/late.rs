@@ -63,16 +63,14 @@ pub fn idle(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
     let idle = initial.filter(|&(agent, id)| wait(agent, id) >= last && end > 0.0);
     let count = idle.count();
     let sources = scene.sources.iter();
-    let sources = sources.map(|one| (&one.name, one.group, Some(one.start)));
+    let begun = sources.map(|one| (&one.name, one.group, Some(one.start)));
     let entrances = scene.entrances.iter();
-    let entrances = entrances.map(|one| (&one.name, one.group, one.arrivals.first()));
+    let arrived = entrances.map(|one| (&one.name, one.group, one.arrivals.first()));
     // Those who come after the end have a note of their own.
-    let later = sources.chain(entrances).filter_map(|(name, group, first)| {
+    let later = begun.chain(arrived).filter_map(|(name, group, first)| {
         let first = first.filter(|&first| first <= last)?;
-        let premovement = scene.groups[usize::from(group)]
-            .traits
-            .premovement
-            .as_ref()?;
+        let traits = &scene.groups[usize::from(group)].traits;
+        let premovement = traits.premovement.as_ref()?;
         (premovement.share_up_to(last - first) <= 0.0).then_some(name)
     });
     let named = later.map(|name| format!("all of {}", shown(name)));
@@ -160,10 +158,8 @@ pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
         };
         let speeds = group.traits.preferred_speed.as_ref();
         let drawn = speeds.map(|speed| speed.quantile(FASTEST));
-        let speed = agent
-            .preferred_speed
-            .or(drawn)
-            .unwrap_or(scene.preferred_speed);
+        let own = agent.preferred_speed.or(drawn);
+        let speed = own.unwrap_or(scene.preferred_speed);
         Some(distance / speed)
     };
     let needed: Option<Vec<f64>> = scene.agents.iter().map(needs).collect();

@@ -27,8 +27,7 @@ pub type PlanFile = (&'static str, PathBuf);
 /// The geometry of the floor plans that a scenario names.
 #[derive(Debug, Clone, Default)]
 pub struct Plans {
-    /// The walkable area: areas that touch at points at most.
-    pub walkable: Option<Vec<Area>>,
+    walkable: Option<Vec<Area>>,
     obstacles: Option<Vec<Area>>,
 }
 
@@ -57,11 +56,9 @@ impl Plans {
                 let reason = format!("{name}: contains only obstacles; name it under `obstacles`");
                 return Err(Problem::new(key, reason));
             }
-            notes.extend(
-                plan.notes
-                    .iter()
-                    .map(|note| format!("{key}: {name}: {note}")),
-            );
+            for note in &plan.notes {
+                notes.push(format!("{key}: {name}: {note}"));
+            }
             if !plan.names.is_empty() {
                 if document.get(LABELS).is_none() {
                     document[LABELS] = json!([]);

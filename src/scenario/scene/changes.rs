@@ -117,10 +117,8 @@ fn accept(change: &Change, others: &[Change], event: &Event) -> Result<(), Probl
 pub fn idle(keys: &File, journeys: &Journeys) -> Vec<String> {
     let note = |(k, event): (usize, &Event)| {
         let name = event.open.as_ref()?;
-        let place = journeys
-            .places
-            .iter()
-            .position(|place| place.name == *name)?;
+        let mut places = journeys.places.iter();
+        let place = places.position(|place| place.name == *name)?;
         let changes = journeys.changes.iter();
         let mut before =
             changes.filter(|one| usize::from(one.place) == place && one.at < event.at_secs);

@@ -12,6 +12,7 @@ use engine::agents::{NewAgent, RADIUS_RANGE};
 use engine::geometry::Area;
 use engine::math::{Vector, bounds};
 use engine::packing::{self, Body, Space};
+use engine::period::Period;
 use engine::random::{self, Purpose};
 use engine::scene::Region;
 
@@ -168,13 +169,11 @@ impl Population<'_> {
         let new = scene.agents.iter().enumerate().skip(self.bodies.len());
         self.bodies.extend(new.map(|(id, agent)| {
             let traits = &scene.groups[usize::from(agent.group)].traits;
+            let wrapped = |period: Period| period.wrapped(agent.position).0;
+            let drawn = || traits.radius_of(scene.seed, id as u32);
             Body {
-                place: scene
-                    .period
-                    .map_or(agent.position, |period| period.wrapped(agent.position).0),
-                radius: agent
-                    .radius
-                    .unwrap_or_else(|| traits.radius_of(scene.seed, id as u32)),
+                place: scene.period.map_or(agent.position, wrapped),
+                radius: agent.radius.unwrap_or_else(drawn),
             }
         }));
     }

@@ -90,10 +90,7 @@ fn crowded(keys: &File, scene: &Scene, entering: u64) -> Option<String> {
         to.is_some_and(|to| to.name == TO_EXIT[0] && to.stages[0].places.len() > 1)
     });
     let looks = scene.groups.iter().any(|group| {
-        let journey = group
-            .journey
-            .map(|k| &scene.journeys.journeys[usize::from(k)]);
-        let mut stages = journey.into_iter().flat_map(|journey| &journey.stages);
+        let mut stages = leaving::stages(scene, group);
         stages.any(|stage| stage.choice == Choice::Quickest)
     });
     let has_choice = !looks && scene.ways.is_some() && (rings.count() > 1 || exits);
@@ -214,10 +211,8 @@ fn coincident(scene: &Scene) -> Option<String> {
 
 /// Notes on the largest forces of runs that begin with crowds at random places.
 fn peaks(keys: &File) -> Vec<String> {
-    let is_random = keys
-        .crowds
-        .iter()
-        .any(|crowd| crowd.spacing == Spacing::Random);
+    let mut crowds = keys.crowds.iter();
+    let is_random = crowds.any(|crowd| crowd.spacing == Spacing::Random);
     let measured = keys.measurements.iter().enumerate().filter(|_| is_random);
     let note = |(k, given): (usize, &Measurement)| {
         let key = given.about().peaks_from_start?;

@@ -172,9 +172,8 @@ impl Found<'_> {
             return Err(Problem::new("name", reason));
         }
         let stages = given.stages.iter().enumerate();
-        let stages: Vec<JourneyStage> = stages
-            .map(|(k, stage)| self.stage(stage).under(&format!("stages[{k}]")))
-            .collect::<Result<_, _>>()?;
+        let checked = stages.map(|(k, stage)| self.stage(stage).under(&format!("stages[{k}]")));
+        let stages: Vec<JourneyStage> = checked.collect::<Result<_, _>>()?;
         let is_exit = |&place: &u16| self.journeys.places[usize::from(place)].is_exit();
         let early = stages.split_last().and_then(|(_, before)| {
             before.iter().position(|stage| {

@@ -6,7 +6,7 @@ use crate::error::numbers::brief;
 use crate::error::quote::shown;
 use crate::file::File;
 use engine::agents::{NewAgent, RADIUS_RANGE, REFERENCE_RADIUS};
-use engine::journeys::{Kind, Place};
+use engine::journeys::{JourneyStage, Kind, Place};
 use engine::math::Vector;
 use engine::scene::{Group, Scene, Source};
 
@@ -25,13 +25,17 @@ fn group(scene: &Scene, k: u16) -> &Group {
     &scene.groups[usize::from(k)]
 }
 
+/// The stages of the journey of a group.
+pub fn stages<'a>(scene: &'a Scene, group: &Group) -> impl Iterator<Item = &'a JourneyStage> {
+    let journeys = &scene.journeys.journeys;
+    let journey = group.journey.map(|k| &journeys[usize::from(k)]);
+    journey.into_iter().flat_map(|journey| &journey.stages)
+}
+
 /// A note on a run that is to end when the floor is empty, but that no agent can leave.
 fn trapped(keys: &File, scene: &Scene) -> Option<String> {
     let leaves = |one: &Group| {
-        let journey = one
-            .journey
-            .map(|k| &scene.journeys.journeys[usize::from(k)]);
-        let mut stages = journey.into_iter().flat_map(|journey| &journey.stages);
+        let mut stages = stages(scene, one);
         let place = |k: &u16| &scene.journeys.places[usize::from(*k)];
         one.removal_radius.is_some()
             || stages.any(|stage| stage.places.iter().any(|k| place(k).is_exit()))
@@ -69,10 +73,7 @@ fn at_once(scene: &Scene) -> Option<String> {
 fn overfull(scene: &Scene) -> Vec<String> {
     let sent = |number: usize| {
         let waits = |agent: &&NewAgent| {
-            let journey = group(scene, agent.group)
-                .journey
-                .map(|k| &scene.journeys.journeys[usize::from(k)]);
-            let mut stages = journey.into_iter().flat_map(|journey| &journey.stages);
+            let mut stages = stages(scene, group(scene, agent.group));
             stages.any(|stage| stage.places == [number as u16])
         };
         scene.agents.iter().filter(waits).count()
@@ -164,11 +165,8 @@ fn narrow(scene: &Scene) -> Vec<String> {
         })
     };
     let places = scene.journeys.places.iter().filter_map(note);
-    let used = scene
-        .agents
-        .iter()
-        .map(|agent| agent.group)
-        .collect::<BTreeSet<u16>>();
+    let groups = scene.agents.iter().map(|agent| agent.group);
+    let used = groups.collect::<BTreeSet<u16>>();
     let goals = used.into_iter().filter_map(|k| {
         let one = group(scene, k);
         let within = one.removal_radius.filter(|&within| within < REFERENCE_RADIUS && !is_alone)?;

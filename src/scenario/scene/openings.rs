@@ -50,10 +50,8 @@ pub struct Opening {
 /// rooms, unless these are next door; the floors of two lines do not touch unless their lines are that near.
 pub fn openings(walkable: &[Area], doors: &[Door]) -> Vec<Opening> {
     let is_floor = |p: Vector| walkable.iter().any(|area| area.contains(p));
-    let openings: Vec<Opening> = doors
-        .iter()
-        .filter_map(|&door| Opening::of(&is_floor, door))
-        .collect();
+    let opening = |&door: &Door| Opening::of(&is_floor, door);
+    let openings: Vec<Opening> = doors.iter().filter_map(opening).collect();
     let widest = |opening: &Opening| {
         let is_taken = |p: Vector, widens: f64| {
             let mut others = openings.iter().filter(|other| !other.is_at(opening.ends));
@@ -171,9 +169,8 @@ impl Opening {
     /// The corners, from `first` meters behind the line.
     pub fn ring(&self, first: f64) -> Vec<[f64; 2]> {
         let is_long = self.depth > WIDE_AT;
-        let steps = [Some(first), is_long.then_some(WIDE_AT), Some(self.depth)]
-            .into_iter()
-            .flatten();
+        let ends = [Some(first), is_long.then_some(WIDE_AT), Some(self.depth)];
+        let steps = ends.into_iter().flatten();
         let there = steps.clone().map(|step| self.place(step, 1.0));
         let back = steps.rev().map(|step| self.place(step, 0.0));
         there.chain(back).map(Into::into).collect()

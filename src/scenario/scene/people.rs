@@ -85,44 +85,45 @@ impl<'a> Population<'a> {
             items.add(Item::From, self.scene);
         }
         for (k, agent) in self.file.agents.iter().enumerate() {
-            let item = Item::Agent(k);
-            self.agent(agent).under(&item.to_string())?;
-            items.add(item, self.scene);
+            self.add(Item::Agent(k), &mut items, |all, _| all.agent(agent))?;
         }
         for (k, grid) in self.file.grids.iter().enumerate() {
-            let item = Item::Grid(k);
-            let name = item.to_string();
-            self.grid(grid, &name).under(&name)?;
-            items.add(item, self.scene);
+            self.add(Item::Grid(k), &mut items, |all, name| all.grid(grid, name))?;
         }
         for (k, crowd) in self.file.crowds.iter().enumerate() {
-            let item = Item::Crowd(k);
-            let name = item.to_string();
-            self.crowd(crowd, k as u32, &name).under(&name)?;
-            items.add(item, self.scene);
+            let enter = |all: &mut Self, name: &str| all.crowd(crowd, k as u32, name);
+            self.add(Item::Crowd(k), &mut items, enter)?;
         }
         for (k, source) in self.file.sources.iter().enumerate() {
-            let item = Item::Source(k);
-            let name = item.to_string();
-            self.source(source, &name).under(&name)?;
-            items.add(item, self.scene);
+            let enter = |all: &mut Self, name: &str| all.source(source, name);
+            self.add(Item::Source(k), &mut items, enter)?;
         }
         for (k, entrance) in self.file.entrances.iter().enumerate() {
-            let item = Item::Entrance(k);
-            let name = item.to_string();
-            self.entrance(entrance, &name).under(&name)?;
-            items.add(item, self.scene);
+            let enter = |all: &mut Self, name: &str| all.entrance(entrance, name);
+            self.add(Item::Entrance(k), &mut items, enter)?;
         }
         self.note_bodies();
         self.notes.extend(overlaps::note(&self.bodies));
         Ok((self.notes, items))
     }
 
+    /// Adds what `enter` adds, which gets the name of the item.
+    fn add(
+        &mut self,
+        item: Item,
+        items: &mut Items,
+        enter: impl FnOnce(&mut Self, &str) -> Result<(), Problem>,
+    ) -> Result<(), Problem> {
+        let name = item.to_string();
+        enter(self, &name).under(&name)?;
+        items.add(item, self.scene);
+        Ok(())
+    }
+
     fn agent(&mut self, agent: &people::Agent) -> Result<(), Problem> {
         let [x, y] = agent.velocity.unwrap_or_default();
-        let own = agent
-            .preferred_speed
-            .map(|speed| self.scene.own_speeds(speed)[1]);
+        let own_most = |speed| self.scene.own_speeds(speed)[1];
+        let own = agent.preferred_speed.map(own_most);
         let (speed, most) = (x.hypot(y), own.unwrap_or(self.scene.max_speed));
         if speed > most * (1.0 + ROUNDING) {
             let reason = format!(

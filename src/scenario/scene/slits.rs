@@ -57,9 +57,8 @@ fn slits(walls: &Walls) -> Vec<(Vector, f64)> {
     let mut compared = 0;
     for (k, one) in edges.iter().enumerate() {
         let right = one[0].x.max(one[1].x) + SLIT;
-        let near = edges[k + 1..]
-            .iter()
-            .take_while(|other| left(other) <= right);
+        let others = edges[k + 1..].iter();
+        let near = others.take_while(|other| left(other) <= right);
         let between = near
             .inspect(|_| compared += 1)
             .filter_map(|other| between(one, other));

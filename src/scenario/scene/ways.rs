@@ -55,9 +55,8 @@ pub fn add(
 ) -> Result<(), Problem> {
     let distances = Distances::new(&items.origins(keys, scene));
     let places = scene.journeys.places.iter();
-    let reached: Vec<Reached> = places
-        .map(|place| distances.reached(place, &scene.walls))
-        .collect();
+    let found = places.map(|place| distances.reached(place, &scene.walls));
+    let reached: Vec<Reached> = found.collect();
     for (place, reached) in scene.journeys.places.iter_mut().zip(&reached) {
         place.goals.clone_from(&reached.goals);
     }
@@ -201,11 +200,8 @@ impl Prepared<'_> {
     pub fn ways(&self, width: f64) -> Result<Ways, Problem> {
         let floor = self.floor(width)?;
         doors::check(self.places, &floor)?;
-        let places: Vec<_> = self
-            .places
-            .iter()
-            .map(|place| place.goals.clone())
-            .collect();
+        let goals = self.places.iter().map(|place| place.goals.clone());
+        let places: Vec<_> = goals.collect();
         Ways::new(floor, &places, self.goals.to_vec()).map_err(|error| match error {
             WayError::NotOnFloor(point) => self.not_on_floor(point),
             error => unusable(error),

@@ -81,9 +81,8 @@ fn add_rows(path: &Path, trajectory: &Dataset, contents: &mut Contents) -> Resul
         ));
     }
     for first in (0..*rows).step_by(ROWS as usize) {
-        let records = trajectory
-            .read_raw_rows(first, ROWS)
-            .map_err(|error| damaged(&error))?;
+        let read = trajectory.read_raw_rows(first, ROWS);
+        let records = read.map_err(|error| damaged(&error))?;
         for (line, record) in (first + 1..).zip(records.chunks_exact(size as usize)) {
             let entry = || {
                 Ok(Entry {

@@ -45,9 +45,8 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let mut query = connection.prepare(&text).map_err(failed)?;
     let mut rows = query.query([]).map_err(failed)?;
     let mut line = 0;
-    let most = path
-        .metadata()
-        .map_or(u64::MAX, |about| about.len() / LEAST_ROW);
+    let about = path.metadata();
+    let most = about.map_or(u64::MAX, |about| about.len() / LEAST_ROW);
     while let Some(row) = rows.next().map_err(failed)? {
         line += 1;
         if line > most {
@@ -73,9 +72,8 @@ pub fn names(path: &Path) -> rusqlite::Result<Vec<String>> {
 pub fn values(path: &Path, names: &[&str]) -> Result<Vec<(i64, i64, Vec<f64>)>, ReadError> {
     let read = || -> rusqlite::Result<Vec<(i64, i64, Vec<f64>)>> {
         let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
-        let quoted = names
-            .iter()
-            .map(|name| format!("\"{}\"", name.replace('"', "\"\"")));
+        let own = names.iter();
+        let quoted = own.map(|name| format!("\"{}\"", name.replace('"', "\"\"")));
         let columns: Vec<String> = quoted.collect();
         let text = format!(
             "SELECT id, frame, {} FROM trajectory_data",

@@ -277,10 +277,9 @@ impl Tracks {
 
     /// Counts the differences between consecutive frames of the same person.
     fn steps(&self) -> BTreeMap<i64, u64> {
-        let frame_of: Vec<i64> = (0..self.frames.len())
-            .flat_map(|k| self.rows(k).map(move |_| k))
-            .map(|k| self.frames[k])
-            .collect();
+        let frames = self.frames.iter().enumerate();
+        let of_rows = frames.flat_map(|(k, &frame)| self.rows(k).map(move |_| frame));
+        let frame_of: Vec<i64> = of_rows.collect();
         let mut steps = BTreeMap::new();
         for pair in self.by_person.iter().flat_map(|rows| rows.windows(2)) {
             let step = frame_of[pair[1] as usize] - frame_of[pair[0] as usize];
@@ -294,10 +293,8 @@ impl Tracks {
         let most = steps.iter().max_by_key(|&(step, count)| (count, -step));
         let common = most.map_or(1, |(&step, _)| step);
         let first = self.frames[0];
-        let fits = self
-            .frames
-            .iter()
-            .all(|frame| (frame - first) % common == 0);
+        let mut frames = self.frames.iter();
+        let fits = frames.all(|frame| (frame - first) % common == 0);
         if fits { common } else { 1 }
     }
 

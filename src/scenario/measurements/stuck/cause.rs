@@ -96,11 +96,11 @@ fn others(simulation: &Simulation, aim: Aim, leaving: usize) -> String {
 
 /// Whether two of these points stand less than `width` apart, on both sides of the direction `ahead`.
 fn are_on_both_sides(points: &[Vector], ahead: Vector, width: f64) -> bool {
-    let is_across = |a: &Vector, b: &Vector| ahead.perp(a) * ahead.perp(b) < 0.0;
-    let mut pairs = points
-        .iter()
-        .flat_map(|a| points.iter().map(move |b| (a, b)));
-    pairs.any(|(a, b)| is_across(a, b) && (a - b).norm() < width)
+    let is_wedged = |a: &Vector| {
+        let wedges = |b: &Vector| ahead.perp(a) * ahead.perp(b) < 0.0 && (a - b).norm() < width;
+        points.iter().any(wedges)
+    };
+    points.iter().any(is_wedged)
 }
 
 /// How an exit holds people back that passes a limited number per second, if it does so now, or if nearly as many as it
@@ -133,9 +133,8 @@ fn walls_ahead(simulation: &Simulation, i: usize, ahead: Vector) -> Vec<Vector> 
     let (p, radius) = (frame.agents.position[i], frame.agents.radius[i]);
     let mut near = Vec::new();
     frame.walls.near(p, radius + TOUCH, &mut near);
-    let to_points = near
-        .iter()
-        .map(|&k| frame.walls.wall(k).nearest_point(p).point - p);
+    let numbers = near.iter();
+    let to_points = numbers.map(|&k| frame.walls.wall(k).nearest_point(p).point - p);
     to_points.filter(|to| to.dot(&ahead) > 0.0).collect()
 }
 
