@@ -57,15 +57,12 @@ impl Spectrum {
         let transform = fourier(&windowed);
         let power = |k: usize| (transform[k][0].powi(2) + transform[k][1].powi(2)) * per_power;
         let all = transform.len();
-        let half = 1..all / 2;
+        let backward = (1..all / 2).map(|k| power(all - k));
         Some(Self {
             step: TAU / (all as f64 * every),
             resolution: TAU / (count as f64 * every),
             counterclockwise: (0..all / 2).map(power).collect(),
-            clockwise: [0.0]
-                .into_iter()
-                .chain(half.map(|k| power(all - k)))
-                .collect(),
+            clockwise: [0.0].into_iter().chain(backward).collect(),
         })
     }
 

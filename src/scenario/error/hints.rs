@@ -92,10 +92,8 @@ pub fn of_syntax(text: &str, line: usize, column: usize) -> Option<String> {
             "JSON has no comments: remove it, or put the words into `description`".to_owned(),
         );
     }
-    let letters = here
-        .chars()
-        .take_while(|c| c.is_alphanumeric() || *c == '_');
-    let word: String = letters.collect();
+    let is_letter = |c: &char| c.is_alphanumeric() || *c == '_';
+    let word: String = here.chars().take_while(is_letter).collect();
     of_word(&word).or_else(|| of_character(whole, from, &word))
 }
 

@@ -121,10 +121,8 @@ fn collect(
     seen: &mut BTreeSet<&'static str>,
     lines: &mut Vec<(String, String)>,
 ) {
-    if schema["$ref"]
-        .as_str()
-        .is_some_and(|name| !seen.insert(name))
-    {
+    let name = schema["$ref"].as_str();
+    if name.is_some_and(|name| !seen.insert(name)) {
         return;
     }
     let schema = resolved(schema);

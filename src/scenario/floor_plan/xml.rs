@@ -40,9 +40,8 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
             let side = [id(room), id(subroom)];
             let doors_of_room = doors.iter().filter(|door| door.sides.contains(&side));
             let own: Vec<Path> = doors_of_room.map(|door| door.path.clone()).collect();
-            let polygons = subroom
-                .children()
-                .filter(|node| node.has_tag_name("polygon"));
+            let parts = subroom.children();
+            let polygons = parts.filter(|node| node.has_tag_name("polygon"));
             let outlines = polygons.map(|wall| vertices(wall, &place, meters));
             let walls: Vec<Path> = outlines.collect::<Result<_, _>>()?;
             let rings = vec![outline(walls, own, &place)?];

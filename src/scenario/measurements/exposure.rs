@@ -116,13 +116,11 @@ impl Measure for Exposure {
             let people = f64::from(exposed.people);
             [people, exposed.person_secs, exposed.longest_secs]
         };
-        let dense = exposed
-            .iter()
-            .zip(&seen.alarms)
-            .flat_map(|(exposed, alarm)| {
-                let (people, longest) = (f64::from(alarm.people), alarm.spell.longest() * secs);
-                of(exposed).into_iter().chain([alarm.area, people, longest])
-            });
+        let pairs = exposed.iter().zip(&seen.alarms);
+        let dense = pairs.flat_map(|(exposed, alarm)| {
+            let (people, longest) = (f64::from(alarm.people), alarm.spell.longest() * secs);
+            of(exposed).into_iter().chain([alarm.area, people, longest])
+        });
         let slow = of(&exposed[DENSITIES.len()]);
         let was_seen = *secs > 0.0;
         let all = dense.chain(slow);

@@ -32,8 +32,8 @@ pub struct Plans {
 }
 
 impl Plans {
-    /// Reads the files that `document` names, relative to `folder`, and takes their names out of it. Adds their labels to
-    /// the document, and notes on them. Returns also the files, each with its key.
+    /// Reads the files that `document` names, relative to `folder`, and takes their names out of it. Adds their labels
+    /// to the document, and notes on them. Returns also the files, each with its key.
     pub fn take(
         document: &mut Value,
         folder: &Path,

@@ -15,7 +15,7 @@ use crate::scene::journeys::TO_EXIT;
 use crate::scene::{changes, eclipsed, leaving, through_walls, units};
 use engine::entrance::Entrance;
 use engine::geometry::Walls;
-use engine::journeys::{Change, ChangeKind, Choice, Kind, Place};
+use engine::journeys::{Change, ChangeKind, Choice, Kind, Place, Zone};
 use engine::math::{Vector, bounds};
 use engine::scene::{Group, Scene};
 use engine::ways::nearest_on;
@@ -105,15 +105,11 @@ fn crowded(keys: &File, scene: &Scene, entering: u64) -> Option<String> {
 /// scenario describes its people, whatever their profile.
 fn unheeded(keys: &File, scene: &Scene) -> Vec<String> {
     let zones = &scene.journeys.zones;
-    let idle = zones
-        .iter()
-        .filter(|zone| zone.speed_factor == 1.0 && zone.motivation == 0.0)
-        .map(|zone| {
-            format!(
-                "zone `{}`: changes nothing; give it a `speed_factor` or a `motivation`",
-                shown(&zone.name)
-            )
-        });
+    let is_idle = |zone: &&Zone| zone.speed_factor == 1.0 && zone.motivation == 0.0;
+    let idle = zones.iter().filter(is_idle).map(|zone| {
+        let name = shown(&zone.name);
+        format!("zone `{name}`: changes nothing; give it a `speed_factor` or a `motivation`")
+    });
     let mut notes: Vec<String> = idle.collect();
     let is_own = |group: &Group| group.motivation != keys.motivation;
     let profile = keys.profile.as_ref();

@@ -118,11 +118,8 @@ impl Found<'_> {
             let reason = format!("more than {MOST_NUMBERED} places");
             return Err(Problem::new(place, reason));
         }
-        if self
-            .numbers
-            .insert(name.to_owned(), number as u16)
-            .is_some()
-        {
+        let other = self.numbers.insert(name.to_owned(), number as u16);
+        if other.is_some() {
             let reason = format!("there are two places named `{}`; rename one", shown(name));
             return Err(Problem::new(format!("{place}.name"), reason));
         }

@@ -91,9 +91,8 @@ fn sides(place: &Place) -> Vec<Vec<Vector>> {
         return vec![goals];
     };
     let beside = perpendicular(direction(b - a)) * BESIDE;
-    [beside, -beside]
-        .map(|beside| goals.iter().map(|p| p + beside).collect())
-        .to_vec()
+    let moved = |way: Vector| goals.iter().map(|p| p + way).collect();
+    vec![moved(beside), moved(-beside)]
 }
 
 /// Points of a line at equal distances, without its ends.

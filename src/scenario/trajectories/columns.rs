@@ -64,10 +64,8 @@ fn in_order(rows: Vec<Row>, count: usize, tracks: &Tracks) -> Vec<Vec<f64>> {
     for (k, &frame) in tracks.frames.iter().enumerate() {
         for row in tracks.rows(k) {
             let id = tracks.ids[tracks.person[row] as usize];
-            for (column, value) in values
-                .iter_mut()
-                .zip(rows.get(&(id, frame)).into_iter().flatten())
-            {
+            let own = rows.get(&(id, frame)).into_iter().flatten();
+            for (column, value) in values.iter_mut().zip(own) {
                 column[row] = *value;
             }
         }

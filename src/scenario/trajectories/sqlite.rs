@@ -19,11 +19,8 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let connection =
         Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY).map_err(failed)?;
     let columns = columns(&connection, "trajectory_data").map_err(failed)?;
-    let needed = ["frame", "id", "pos_x", "pos_y"];
-    if let Some(missing) = needed
-        .iter()
-        .find(|name| !columns.iter().any(|own| own == *name))
-    {
+    let mut needed = ["frame", "id", "pos_x", "pos_y"].into_iter();
+    if let Some(missing) = needed.find(|name| !columns.iter().any(|own| own == name)) {
         let problem = if columns.is_empty() {
             "it has no table trajectory_data: this is no trajectory of JuPedSim".to_owned()
         } else {
