@@ -17,7 +17,7 @@ use crate::keys::shapes::region;
 use crate::read::draft::{Draft, Inputs};
 use crate::read::plans::Plans;
 use crate::read::scenario::Scenario;
-use crate::read::{curves, data, late, preset};
+use crate::read::{curves, data, late, plans, preset};
 use crate::scene::need::Need;
 use crate::scene::origin::Items;
 use crate::scene::people::Population;
@@ -50,7 +50,6 @@ impl Draft {
         let need = Need::of(&keys, &numerics::first_clock(&keys), duration(&keys))?;
         Ok(Self {
             document,
-            plans,
             files,
             keys,
             notes,
@@ -137,7 +136,7 @@ impl Draft {
         let view = view::of(keys.view.as_ref(), &scene).under("view")?;
         notes.extend(view::unseen(keys, &view.region));
         let mut document = self.document;
-        self.plans.write(keys, &mut document);
+        plans::write(&self.files, keys, &mut document);
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         Ok(Scenario {
             name: keys.name.clone().unwrap_or_else(|| stem.into_owned()),

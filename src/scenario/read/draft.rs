@@ -8,7 +8,7 @@ use crate::error::kinds;
 use crate::error::numbers::tidy;
 use crate::error::{Problem, ScenarioError};
 use crate::file::File;
-use crate::read::plans::{PlanFile, Plans};
+use crate::read::plans::PlanFile;
 use crate::read::scenario::Scenario;
 use crate::read::setting::Setting;
 use crate::read::{document, late, plans};
@@ -18,10 +18,8 @@ use crate::trajectories::Tracks;
 /// A scenario whose names, types and ranges are valid. Relations between values are not checked yet.
 #[derive(Debug, Clone)]
 pub struct Draft {
-    /// The JSON, with its preset expanded and the files that it names inlined, but for floor plans.
+    /// The JSON, with its preset expanded and the files that it names inlined, but for floor plans, which `keys` have.
     pub(super) document: Value,
-    /// The floor plans that it names; `keys` has them, too.
-    pub(super) plans: Plans,
     /// The files that it names.
     pub(super) files: Vec<PlanFile>,
     pub(super) keys: File,

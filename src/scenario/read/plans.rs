@@ -24,11 +24,11 @@ const LABELS: &str = "labels";
 /// The key that names a file, and the file: a floor plan or trajectories.
 pub type PlanFile = (&'static str, PathBuf);
 
-/// The geometry of the floor plans that a scenario names.
-#[derive(Debug, Clone, Default)]
+/// The geometry of the floor plans that a scenario names, in the form of keys.
+#[derive(Default)]
 pub struct Plans {
-    walkable: Option<Vec<Area>>,
-    obstacles: Option<Vec<Area>>,
+    walkable: Option<Vec<Vec<Ring>>>,
+    obstacles: Option<Vec<Outline>>,
 }
 
 impl Plans {
@@ -70,32 +70,31 @@ impl Plans {
             }
             if key == OBSTACLES {
                 document[key] = json!([]);
-                plans.obstacles = Some(plan.obstacles);
+                plans.obstacles = Some(outlines(&plan.obstacles));
             } else {
                 document[key] = Value::Null;
-                plans.walkable = Some(plan.walkable);
+                plans.walkable = Some(polygons(&plan.walkable));
             }
         }
         Ok((plans, files))
     }
 
     /// Enters the geometry into the keys of a document that lacks it.
-    pub fn enter(&self, keys: &mut File) {
-        if let Some(walkable) = &self.walkable {
-            keys.walkable_area = Some(walkable.iter().map(rings).collect());
-        }
-        if let Some(obstacles) = &self.obstacles {
-            keys.obstacles = obstacles.iter().map(outline).collect();
+    pub fn enter(self, keys: &mut File) {
+        keys.walkable_area = self.walkable.or(keys.walkable_area.take());
+        if let Some(obstacles) = self.obstacles {
+            keys.obstacles = obstacles;
         }
     }
+}
 
-    /// Writes the geometry in `keys` into a document that lacks it.
-    pub fn write(&self, keys: &File, document: &mut Value) {
-        if self.walkable.is_some() {
-            document[WALKABLE_AREA] = json!(keys.walkable_area);
-        }
-        if self.obstacles.is_some() {
-            document[OBSTACLES] = json!(keys.obstacles);
+/// Writes the geometry of `files`, which `keys` have, into a document that lacks it.
+pub fn write(files: &[PlanFile], keys: &File, document: &mut Value) {
+    for &(key, _) in files {
+        match key {
+            WALKABLE_AREA => document[key] = json!(keys.walkable_area),
+            OBSTACLES => document[key] = json!(keys.obstacles),
+            _ => {}
         }
     }
 }
@@ -120,12 +119,14 @@ impl Setting {
     /// Settings that replace a scenario's walkable area, obstacles and labels with those of `plan`; messages call them
     /// `text`.
     pub fn floor_plan(plan: &FloorPlan, text: &str) -> [Self; 3] {
-        let walkable: Vec<_> = plan.walkable.iter().map(rings).collect();
-        let obstacles: Vec<_> = plan.obstacles.iter().map(outline).collect();
-        let walkable = Some(walkable).filter(|areas| !areas.is_empty());
+        let walkable = Some(&plan.walkable).filter(|areas| !areas.is_empty());
         [
-            Self::of(WALKABLE_AREA, json!(walkable), text),
-            Self::of(OBSTACLES, json!(obstacles), text),
+            Self::of(
+                WALKABLE_AREA,
+                json!(walkable.map(|areas| polygons(areas))),
+                text,
+            ),
+            Self::of(OBSTACLES, json!(outlines(&plan.obstacles)), text),
             Self::of(LABELS, labels_of(plan).collect(), text),
         ]
     }
@@ -137,14 +138,17 @@ fn labels_of(plan: &FloorPlan) -> impl Iterator<Item = Value> {
     names.map(|Label { text, at, width }| json!({"text": text, "at": [at.x, at.y], "width": width}))
 }
 
-/// The outline of an area, then its holes.
-fn rings(area: &Area) -> Vec<Ring> {
-    area.rings().map(Into::into).collect()
+/// Areas, each as its outline, then its holes.
+fn polygons(areas: &[Area]) -> Vec<Vec<Ring>> {
+    let rings = |area: &Area| area.rings().map(Into::into).collect();
+    areas.iter().map(rings).collect()
 }
 
-fn outline(area: &Area) -> Outline {
-    match area.holes.is_empty() {
+/// Areas, each as its outline, or as a list of rings if it has holes.
+fn outlines(areas: &[Area]) -> Vec<Outline> {
+    let outline = |area: &Area| match area.holes.is_empty() {
         true => Outline::Ring((&area.exterior).into()),
-        false => Outline::Rings(rings(area)),
-    }
+        false => Outline::Rings(area.rings().map(Into::into).collect()),
+    };
+    areas.iter().map(outline).collect()
 }
