@@ -36,9 +36,9 @@ pub fn mean_curve(curves: &[Vec<Option<f64>>]) -> Vec<Option<MeanPoint>> {
         let value = |curve: &Vec<Option<f64>>| curve.get(k).copied().flatten();
         let values: Vec<Option<f64>> = curves.iter().map(value).collect();
         let (runs, mean) = mean(values.iter())?;
-        let drawn = draws.iter();
-        let drawn =
-            drawn.filter_map(|draw| Some(self::mean(draw.iter().map(|&run| &values[run]))?.1));
+        let drawn = draws
+            .iter()
+            .filter_map(|draw| Some(self::mean(draw.iter().map(|&run| &values[run]))?.1));
         let mut means: Vec<f64> = drawn.collect();
         means.sort_by(f64::total_cmp);
         let tail = expanded_tail(runs).unwrap_or(0.5);
@@ -94,11 +94,11 @@ mod tests {
         let curves: Vec<Vec<Option<f64>>> = [[1.0, 4.0], [2.0, 6.0], [6.0, 5.0], [3.0, 9.0]]
             .map(|values| values.map(Some).to_vec())
             .to_vec();
-        let changed = curves.iter().map(|curve| {
+        let lines = curves.iter().map(|curve| {
             let change = |value: &Option<f64>| value.map(|value| 3.0 * value + 1.0);
             curve.iter().map(change).collect()
         });
-        let changed: Vec<Vec<Option<f64>>> = changed.collect();
+        let changed: Vec<Vec<Option<f64>>> = lines.collect();
         for (one, other) in mean_curve(&curves).into_iter().zip(mean_curve(&changed)) {
             let (one, other) = (one.unwrap(), other.unwrap());
             assert!(one.band[0] < one.mean && one.mean < one.band[1]);

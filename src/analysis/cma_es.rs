@@ -152,8 +152,8 @@ impl CmaEs {
     /// Draws the points of the next generation.
     pub fn ask(&mut self) -> Vec<Vec<f64>> {
         let mut point = || {
-            let normal = (0..self.mean.len()).map(|_| normal(&mut self.rng));
-            let normal = DVector::from_iterator(self.mean.len(), normal);
+            let draws = (0..self.mean.len()).map(|_| normal(&mut self.rng));
+            let normal = DVector::from_iterator(self.mean.len(), draws);
             let point = &self.mean + self.step * self.root.times(&normal);
             point.as_slice().to_vec()
         };
@@ -171,9 +171,9 @@ impl CmaEs {
         let mut order: Vec<usize> = (0..points.len().min(values.len())).collect();
         order.sort_by(|&a, &b| value(a).total_cmp(&value(b)));
         let way = |k: usize| (DVector::from_column_slice(&points[k]) - &self.mean) / self.step;
-        let parents = order.iter().zip(&of.weights);
+        let best = order.iter().zip(&of.weights);
         let parents: Vec<(DVector<f64>, f64)> =
-            parents.map(|(&k, &weight)| (way(k), weight)).collect();
+            best.map(|(&k, &weight)| (way(k), weight)).collect();
         let n = self.mean.len();
         let zero = || DVector::zeros(n);
         let way = parents

@@ -38,8 +38,8 @@ impl Trajectories {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let (mut points, mut changed) = (Vec::new(), Vec::new());
         for _ in 0..count {
-            let levels = (0..dimension).map(|_| rng.random_range(0..LEVELS));
-            let mut levels: Vec<u8> = levels.collect();
+            let drawn = (0..dimension).map(|_| rng.random_range(0..LEVELS));
+            let mut levels: Vec<u8> = drawn.collect();
             let mut order: Vec<usize> = (0..dimension).collect();
             for k in (1..dimension).rev() {
                 order.swap(k, rng.random_range(0..=k));
@@ -86,8 +86,6 @@ impl Effect {
 
 fn point(levels: &[u8]) -> Vec<f64> {
     let last = f64::from(LEVELS - 1);
-    levels
-        .iter()
-        .map(|&level| f64::from(level) / last)
-        .collect()
+    let parts = levels.iter().map(|&level| f64::from(level) / last);
+    parts.collect()
 }

@@ -57,18 +57,12 @@ impl Spectrum {
         let transform = fourier(&windowed);
         let power = |k: usize| (transform[k][0].powi(2) + transform[k][1].powi(2)) * per_power;
         let all = transform.len();
-        let half = 1..all / 2;
+        let backward = (1..all / 2).map(|k| power(all - k));
         Some(Self {
             step: TAU / (all as f64 * every),
             resolution: TAU / (count as f64 * every),
-            counterclockwise: [power(0)]
-                .into_iter()
-                .chain(half.clone().map(power))
-                .collect(),
-            clockwise: [0.0]
-                .into_iter()
-                .chain(half.map(|k| power(all - k)))
-                .collect(),
+            counterclockwise: (0..all / 2).map(power).collect(),
+            clockwise: [0.0].into_iter().chain(backward).collect(),
         })
     }
 
@@ -101,9 +95,8 @@ impl Spectrum {
 
     /// The part of the power at frequencies in a band, rad/s; `None` without power.
     pub fn share(&self, [low, high]: [f64; 2]) -> Option<f64> {
-        let inside = self
-            .densities()
-            .filter(|[frequency, _]| (low..=high).contains(frequency));
+        let all = self.densities();
+        let inside = all.filter(|[frequency, _]| (low..=high).contains(frequency));
         let part = inside.map(|[_, density]| density).sum::<f64>() * self.step / self.power();
         part.is_finite().then_some(part)
     }
@@ -199,10 +192,8 @@ pub fn correlation_lengths(
     sides: [f64; 2],
 ) -> [Option<f64>; 2] {
     let rows = boxes.len().checked_div(columns).unwrap_or(0);
-    let still: Vec<_> = boxes
-        .iter()
-        .map(|of| of.as_deref().map(without_mean))
-        .collect();
+    let each = boxes.iter().map(|of| of.as_deref().map(without_mean));
+    let still: Vec<_> = each.collect();
     let product = |a: usize, b: usize| -> Option<f64> {
         let (a, b) = (still[a].as_deref()?, still[b].as_deref()?);
         Some(
@@ -216,8 +207,8 @@ pub fn correlation_lengths(
         let count = products.len() as f64;
         (count > 0.0).then(|| products.iter().sum::<f64>() / count)
     };
-    let power = mean((0..boxes.len()).filter_map(|k| product(k, k)).collect());
-    let power = power.filter(|&power| power > 0.0);
+    let square = mean((0..boxes.len()).filter_map(|k| product(k, k)).collect());
+    let power = square.filter(|&power| power > 0.0);
     let along = |step: usize, place: fn(usize, usize) -> usize, count: usize| {
         let power = power?;
         let at = |distance: usize| {
@@ -244,10 +235,8 @@ pub fn correlation_lengths(
 
 fn without_mean(series: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mean = [0, 1].map(|k| series.iter().map(|v| v[k]).sum::<f64>() / series.len() as f64);
-    series
-        .iter()
-        .map(|v| [v[0] - mean[0], v[1] - mean[1]])
-        .collect()
+    let rest = series.iter().map(|v| [v[0] - mean[0], v[1] - mean[1]]);
+    rest.collect()
 }
 
 /// Σ_n z_n e^(−2πi kn/N) for all k; N is a power of two (Cooley and Tukey 1965).

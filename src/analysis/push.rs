@@ -72,8 +72,8 @@ impl Pushed {
     /// straight line through the times at which people reach them; `None` if it reaches fewer than four people, or
     /// does not run forward.
     pub fn front(row: &[Self]) -> Option<f64> {
-        let lines = (0..THRESHOLDS.len()).filter_map(|k| slowness(row, |one| one.reached[k]));
-        let lines: Vec<f64> = lines.collect();
+        let slopes = (0..THRESHOLDS.len()).filter_map(|k| slowness(row, |one| one.reached[k]));
+        let lines: Vec<f64> = slopes.collect();
         let median = (!lines.is_empty()).then(|| Range::of(&lines).median);
         median.filter(|slowness| *slowness > 0.0).map(f64::recip)
     }
@@ -95,8 +95,8 @@ impl Pushed {
 
 /// dt/dx of the line of least squares through the times of people over their places, s/m.
 fn slowness(row: &[Pushed], time: impl Fn(&Pushed) -> Option<f64>) -> Option<f64> {
-    let points = row.iter().filter_map(|one| Some((one.place, time(one)?)));
-    let points: Vec<(f64, f64)> = points.collect();
+    let known = row.iter().filter_map(|one| Some((one.place, time(one)?)));
+    let points: Vec<(f64, f64)> = known.collect();
     if points.len() < FEWEST {
         return None;
     }
@@ -121,10 +121,9 @@ fn break_of(values: &[f64]) -> Option<f64> {
     let rest = without_line(values);
     let candidates = (1..PARTS * (values.len() - 1)).map(|part| part as f64 / PARTS as f64);
     let gained = candidates.map(|at| {
-        let hinge: Vec<f64> = (0..values.len())
-            .map(|k| (k as f64 - at).max(0.0))
-            .collect();
-        let hinge = without_line(&hinge);
+        let bent = (0..values.len()).map(|k| (k as f64 - at).max(0.0));
+        let kink: Vec<f64> = bent.collect();
+        let hinge = without_line(&kink);
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let own = product(&hinge, &hinge);
         let gained = if own > 1e-9 {
@@ -144,9 +143,8 @@ fn without_line(values: &[f64]) -> Vec<f64> {
     let off = |k: usize| k as f64 - middle;
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let all = || values.iter().enumerate();
-    let rise = all().map(|(k, value)| off(k) * value).sum::<f64>();
-    let rise = rise / all().map(|(k, _)| off(k).powi(2)).sum::<f64>();
-    all()
-        .map(|(k, value)| value - mean - rise * off(k))
-        .collect()
+    let moment = all().map(|(k, value)| off(k) * value).sum::<f64>();
+    let rise = moment / all().map(|(k, _)| off(k).powi(2)).sum::<f64>();
+    let rest = all().map(|(k, value)| value - mean - rise * off(k));
+    rest.collect()
 }

@@ -51,9 +51,8 @@ pub fn contacts(simulation: &Simulation, region: &Region) -> Option<Contacts> {
     let frame = simulation.frame();
     let agents = frame.agents;
     let radius = |i: usize| agents.radius[i] * simulation.blend(i).reach().contact_scale;
-    let inside: Vec<usize> = (0..agents.len())
-        .filter(|&i| region.contains(agents.position[i]))
-        .collect();
+    let found = (0..agents.len()).filter(|&i| region.contains(agents.position[i]));
+    let inside: Vec<usize> = found.collect();
     let count = inside.len() as f64;
     let (mut modulus, mut touching) = (0.0, 0usize);
     let widest = (0..agents.len()).map(&radius).fold(0.0, f64::max);

@@ -136,8 +136,8 @@ impl Outlines {
         let middle = |cell: &Cell| (cell.ends[0] + cell.ends[1]) * 0.5;
         let here = middle(&self.cells[k]);
         let near = |cell: &Cell| (middle(cell) - here).norm() <= 0.5 * WINDOW;
-        let ring = self.rings.iter().find(|ring| ring.contains(&k));
-        let ring = ring.cloned().unwrap_or_default();
+        let own = self.rings.iter().find(|ring| ring.contains(&k));
+        let ring = own.cloned().unwrap_or_default();
         let parts = self.cells[ring.clone()].iter().zip(&forces[ring]);
         let (mut sum, mut total) = (Vector::zeros(), 0.0);
         for (cell, &force) in parts.filter(|(cell, _)| near(cell)) {
@@ -181,8 +181,8 @@ impl Sums {
         let laps = (place / self.length()).floor();
         let place = place - laps * self.length();
         let last = self.lengths.len() - 2;
-        let k = self.lengths.partition_point(|&end| end <= place);
-        let k = k.saturating_sub(1).min(last);
+        let after = self.lengths.partition_point(|&end| end <= place);
+        let k = after.saturating_sub(1).min(last);
         let part = (place - self.lengths[k]) / (self.lengths[k + 1] - self.lengths[k]);
         let total = self.forces[last + 1];
         laps * total + self.forces[k] + part * (self.forces[k + 1] - self.forces[k])

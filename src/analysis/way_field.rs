@@ -131,8 +131,8 @@ impl WayField {
 
     /// The numbers of all first corners.
     pub fn corners(&self) -> Vec<u32> {
-        let corners = self.next.iter().copied().filter(|&next| next < GOAL);
-        let mut corners: Vec<u32> = corners.map(|bend| bend / 2).collect();
+        let bends = self.next.iter().copied().filter(|&next| next < GOAL);
+        let mut corners: Vec<u32> = bends.map(|bend| bend / 2).collect();
         corners.sort_unstable();
         corners.dedup();
         corners

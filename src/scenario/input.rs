@@ -67,9 +67,8 @@ pub fn standard_input() -> Result<String> {
 }
 
 fn text_of(bytes: Vec<u8>) -> Result<String> {
-    let text = String::from_utf8(bytes);
-    let mut text =
-        text.map_err(|error| Error::new(ErrorKind::InvalidData, not_text(error.as_bytes())))?;
+    let mut text = String::from_utf8(bytes)
+        .map_err(|error| Error::new(ErrorKind::InvalidData, not_text(error.as_bytes())))?;
     text.drain(..text.len() - without_mark(&text).len());
     Ok(text)
 }

@@ -144,11 +144,12 @@ struct Field {
 
 impl Field {
     fn new(diagram: &SpaceTime, run: &Run) -> Self {
-        let columns = (0..diagram.strip.bins()).filter_map(|bin| {
-            let disturbance = diagram.disturbance(bin, run.start)?;
-            Some((diagram.strip.middle(bin), disturbance))
-        });
-        let columns: Vec<Column> = columns.collect();
+        let columns: Vec<Column> = (0..diagram.strip.bins())
+            .filter_map(|bin| {
+                let disturbance = diagram.disturbance(bin, run.start)?;
+                Some((diagram.strip.middle(bin), disturbance))
+            })
+            .collect();
         let before = diagram.times.iter().filter(|&&t| t < run.start).count();
         let quiet = columns.iter().flat_map(|(_, s)| &s[..before]);
         let squares = quiet.clone().map(|v| v * v).sum::<f64>();

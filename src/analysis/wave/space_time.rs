@@ -80,10 +80,8 @@ impl SpaceTime {
     /// before `start`.
     pub(super) fn disturbance(&self, bin: usize, start: f64) -> Option<Vec<f64>> {
         let bins = self.strip.bins();
-        let series: Option<Vec<f64>> = (0..self.times.len())
-            .map(|row| self.velocity[row * bins + bin])
-            .collect();
-        let series = series?;
+        let values = (0..self.times.len()).map(|row| self.velocity[row * bins + bin]);
+        let series = values.collect::<Option<Vec<f64>>>()?;
         let before = self.times.iter().filter(|&&time| time < start).count();
         if before == 0 {
             return None;

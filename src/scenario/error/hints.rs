@@ -92,27 +92,29 @@ pub fn of_syntax(text: &str, line: usize, column: usize) -> Option<String> {
             "JSON has no comments: remove it, or put the words into `description`".to_owned(),
         );
     }
-    let word: String = here
-        .chars()
-        .take_while(|c| c.is_alphanumeric() || *c == '_')
-        .collect();
-    let known = [
-        ("True", "true"),
-        ("False", "false"),
-        ("None", "null"),
-        ("TRUE", "true"),
-        ("FALSE", "false"),
-        ("NULL", "null"),
-    ];
-    if let Some((_, right)) = known.into_iter().find(|(given, _)| *given == word) {
-        return Some(format!("`{word}` is not JSON: write {right}"));
-    }
-    if matches!(word.to_lowercase().as_str(), "nan" | "inf" | "infinity") {
-        return Some(format!(
-            "`{}` is no number of JSON: leave the key out for its default",
-            shown(&word)
-        ));
-    }
+    let is_letter = |c: &char| c.is_alphanumeric() || *c == '_';
+    let word: String = here.chars().take_while(is_letter).collect();
+    of_word(&word).or_else(|| of_character(whole, from, &word))
+}
+
+/// What to write in place of a word of another language.
+fn of_word(word: &str) -> Option<String> {
+    let right = match word {
+        "True" | "TRUE" => "true",
+        "False" | "FALSE" => "false",
+        "None" | "NULL" => "null",
+        _ if matches!(&*word.to_lowercase(), "nan" | "inf" | "infinity") => {
+            let advice = "is no number of JSON: leave the key out for its default";
+            return Some(format!("`{}` {advice}", shown(word)));
+        }
+        _ => return None,
+    };
+    Some(format!("`{word}` is not JSON: write {right}"))
+}
+
+/// What to write in place of the character at `from` in a line, at which `word` begins; the word may be empty.
+fn of_character(line: &str, from: usize, word: &str) -> Option<String> {
+    let here = &line[from..];
     match here.chars().next()? {
         '\'' => Some("JSON has double quotes: write \"…\" in place of '…'".to_owned()),
         '“' | '”' | '„' | '«' | '»' => {
@@ -128,11 +130,11 @@ pub fn of_syntax(text: &str, line: usize, column: usize) -> Option<String> {
                 u32::from(c)
             ))
         }
-        c if c.is_ascii_digit() && is_decimal(whole, from) => {
+        c if c.is_ascii_digit() && is_decimal(line, from) => {
             Some("JSON has decimal points: write 1.5, not 1,5".to_owned())
         }
         _ if !word.is_empty() && here[word.len()..].trim_start().starts_with(':') => {
-            Some(format!("keys stand in double quotes: \"{}\"", shown(&word)))
+            Some(format!("keys stand in double quotes: \"{}\"", shown(word)))
         }
         _ => None,
     }

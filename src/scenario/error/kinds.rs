@@ -28,9 +28,8 @@ const ENDINGS: [(&[&str], &str); 4] = [
 /// What a file with this name is, if it is neither a scenario nor a plan.
 pub fn of_name(path: &Path) -> Option<&'static str> {
     let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-    let found = ENDINGS
-        .iter()
-        .find(|(endings, _)| endings.contains(&ending.as_str()));
+    let mut known = ENDINGS.iter();
+    let found = known.find(|(endings, _)| endings.contains(&ending.as_str()));
     found.map(|(_, what)| *what)
 }
 

@@ -6,6 +6,7 @@ pub mod numbers;
 pub mod quote;
 
 use crate::error::quote::shown;
+use engine::geometry::PolygonError;
 
 /// Why a scenario cannot be run; displays as `FILE: key.path[3].key: reason`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -107,6 +108,12 @@ impl Problem {
             path: format!("{parent}{joint}{}", self.path),
             reason: self.reason,
         }
+    }
+}
+
+impl From<PolygonError> for Problem {
+    fn from(error: PolygonError) -> Self {
+        Self::new("", error.to_string())
     }
 }
 

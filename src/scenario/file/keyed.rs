@@ -18,9 +18,8 @@ impl Kinds {
     fn of(schema: &'static Value) -> Option<Self> {
         let schema = resolved(schema);
         // Beside a type, they are conditions on an object.
-        let all = schema["oneOf"]
-            .as_array()
-            .filter(|_| schema["type"].is_null());
+        let list = schema["oneOf"].as_array();
+        let all = list.filter(|_| schema["type"].is_null());
         let own = all.and_then(|all| {
             let keys = all.iter().map(|way| {
                 let mut keys = way["properties"].as_object()?.iter();
@@ -46,10 +45,8 @@ impl Kinds {
     /// Why an object is not of exactly one kind; `is_listed`: it is an element of a list.
     fn refusal(&self, given: &Map<String, Value>, is_listed: bool) -> Option<String> {
         let noun = self.noun;
-        let known: Vec<&String> = given
-            .keys()
-            .filter(|key| self.find(key).is_some())
-            .collect();
+        let found = given.keys().filter(|key| self.find(key).is_some());
+        let known: Vec<&String> = found.collect();
         let quoted = |key: &str| format!("`{}`", shown(key));
         match known[..] {
             _ if given.is_empty() => {
@@ -57,11 +54,11 @@ impl Kinds {
                 Some(format!("has no {noun}: give one of {}", all.join(", ")))
             }
             [_, _, ..] if is_listed => {
-                let each = known.iter().map(|key| match given[*key].as_object() {
+                let objects = known.iter().map(|key| match given[*key].as_object() {
                     Some(keys) if keys.is_empty() => format!("{{\"{key}\": {{}}}}"),
                     _ => format!("{{\"{key}\": …}}"),
                 });
-                let each: Vec<String> = each.collect();
+                let each: Vec<String> = objects.collect();
                 Some(format!("one {noun} per object: [{}]", each.join(", ")))
             }
             [_, _, ..] => {

@@ -121,18 +121,16 @@ fn collect(
     seen: &mut BTreeSet<&'static str>,
     lines: &mut Vec<(String, String)>,
 ) {
-    if schema["$ref"]
-        .as_str()
-        .is_some_and(|name| !seen.insert(name))
-    {
+    let name = schema["$ref"].as_str();
+    if name.is_some_and(|name| !seen.insert(name)) {
         return;
     }
     let schema = resolved(schema);
-    let ways = ["anyOf", "oneOf"].map(|key| schema[key].as_array());
-    let ways = || ways.into_iter().flatten().flatten();
+    let lists = ["anyOf", "oneOf"].map(|key| schema[key].as_array());
+    let ways = || lists.into_iter().flatten().flatten();
     // The keys that tell alternatives apart.
-    let keyed = ways().filter_map(|way| way["required"][0].as_str());
-    let keyed: Vec<&str> = keyed.collect();
+    let first_keys = ways().filter_map(|way| way["required"][0].as_str());
+    let keyed: Vec<&str> = first_keys.collect();
     let keys = || schema["properties"].as_object().into_iter().flatten();
     let mut line = Vec::new();
     if !keyed.is_empty() {

@@ -90,17 +90,12 @@ fn is_parameter(key: &str) -> bool {
 
 /// What to write in place of a name that no journey has.
 fn not_a_journey(document: &Value, name: &str) -> Option<String> {
-    let journeys = document["journeys"].as_array();
-    if journeys
-        .into_iter()
-        .flatten()
-        .any(|one| one["name"] == name)
-    {
+    let mut journeys = document["journeys"].as_array().into_iter().flatten();
+    if journeys.any(|one| one["name"] == name) {
         return None;
     }
-    let (_, what) = PLACES
-        .into_iter()
-        .find(|(list, _)| has(document, list, name))?;
+    let mut places = PLACES.into_iter();
+    let (_, what) = places.find(|(list, _)| has(document, list, name))?;
     let name = shown(name);
     Some(format!(
         "`{name}` is {what}, not a journey: declare one that leads there, \"journeys\": [{{\"name\": \"way\", \

@@ -90,8 +90,8 @@ fn check_names_in(schema: &'static Value, value: &Value) -> Result<(), Problem> 
     if let Value::Object(object) = value
         && schema["additionalProperties"] == false
     {
-        let known = schema["properties"].as_object().into_iter().flatten();
-        let known: Vec<&str> = known.map(|(key, _)| key.as_str()).collect();
+        let entries = schema["properties"].as_object().into_iter().flatten();
+        let known: Vec<&str> = entries.map(|(key, _)| key.as_str()).collect();
         if let Some(key) = object.keys().find(|key| !known.contains(&key.as_str())) {
             let reason = format!(
                 "unknown field `{key}`, expected one of `{}`",
@@ -134,8 +134,8 @@ fn check_type(schema: &'static Value, value: &Value) -> Result<(), Problem> {
 
 /// The problem of a value in place of a list.
 fn not_a_list(schema: &'static Value, value: &Value) -> Problem {
-    let said = Vec::<Value>::deserialize(value).err();
-    let said = said.map_or(String::new(), |error| in_plain_words(&error.to_string()));
+    let error = Vec::<Value>::deserialize(value).err();
+    let said = error.map_or(String::new(), |error| in_plain_words(&error.to_string()));
     // The words already say this for objects.
     let is_element = !value.is_object() && fits(&schema["items"], value);
     let hint = match is_element {
@@ -224,11 +224,9 @@ impl Range {
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let from = if self.open { "above" } else { "at least" };
-        let ends = [(from, self.lowest), ("at most", self.highest)];
-        let ends = ends
+        let ends: Vec<String> = [(from, self.lowest), ("at most", self.highest)]
             .into_iter()
-            .filter_map(|(words, end)| Some((words, end?)));
-        let ends: Vec<String> = ends
+            .filter_map(|(words, end)| Some((words, end?)))
             .map(|(words, end)| format!("{words} {}", brief(end)))
             .collect();
         f.write_str(&ends.join(" and "))

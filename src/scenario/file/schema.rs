@@ -38,10 +38,8 @@ pub fn schema() -> Value {
 
 /// The pointer to the definition of a kind of measurement.
 fn definition_of(kind: &str) -> &'static str {
-    let mut kinds = SCHEMA["$defs"]["Measurement"]["oneOf"]
-        .as_array()
-        .into_iter()
-        .flatten();
+    let list = SCHEMA["$defs"]["Measurement"]["oneOf"].as_array();
+    let mut kinds = list.into_iter().flatten();
     let pointer = kinds.find_map(|one| one["properties"][kind]["$ref"].as_str());
     pointer.unwrap_or_default().trim_start_matches('#')
 }
@@ -100,17 +98,15 @@ pub fn property(key: &str) -> &'static Value {
 
 /// The schema that `schema` refers to, or `schema` itself.
 pub fn resolved(schema: &'static Value) -> &'static Value {
-    let name = schema["$ref"]
-        .as_str()
-        .and_then(|path| path.strip_prefix("#/$defs/"));
+    let reference = schema["$ref"].as_str();
+    let name = reference.and_then(|path| path.strip_prefix("#/$defs/"));
     name.map_or(schema, |name| resolved(&SCHEMA["$defs"][name]))
 }
 
 /// The alternatives of a schema that has some, without `null`.
 pub fn ways(schema: &'static Value) -> Option<impl Iterator<Item = &'static Value>> {
-    let ways = ["anyOf", "oneOf"]
-        .into_iter()
-        .find_map(|key| schema[key].as_array())?;
+    let mut keys = ["anyOf", "oneOf"].into_iter();
+    let ways = keys.find_map(|key| schema[key].as_array())?;
     let only_ways = schema.get("type").is_none(); // else they are conditions on its object
     only_ways.then(|| ways.iter().filter(|way| way["type"] != "null"))
 }
@@ -126,10 +122,8 @@ pub fn allows(schema: &Value, name: &str) -> bool {
 /// The words for the values of a definition: its description, unless that is a sentence about an object.
 pub fn words_of(definition: &Value) -> Option<String> {
     let description = definition["description"].as_str()?;
-    let first = description
-        .chars()
-        .next()
-        .filter(|_| !description.ends_with('.'))?;
+    let letter = description.chars().next();
+    let first = letter.filter(|_| !description.ends_with('.'))?;
     Some(format!(
         "{}{}",
         first.to_lowercase(),

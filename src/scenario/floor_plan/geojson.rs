@@ -148,12 +148,7 @@ fn collect(
 ) -> Result<(), FloorPlanError> {
     parts(geometry).polygons(place, &mut |polygon, place| {
         let rings = rings(polygon, &place)?;
-        shapes.push(Shape {
-            place,
-            name: None,
-            rings,
-            is_obstacle,
-        });
+        shapes.push(Shape::new(place, rings, is_obstacle));
         Ok(())
     })
 }
@@ -162,8 +157,7 @@ fn parts(geometry: &Geometry) -> Parts<&[Vec<Position>]> {
     match &geometry.value {
         GeometryValue::Polygon { coordinates } => Parts::Polygon(coordinates),
         GeometryValue::MultiPolygon { coordinates } => {
-            let polygons = coordinates.iter().map(Vec::as_slice);
-            let polygons = polygons.map(Parts::Polygon);
+            let polygons = coordinates.iter().map(Vec::as_slice).map(Parts::Polygon);
             Parts::Several("polygon", polygons.collect())
         }
         GeometryValue::GeometryCollection { geometries } => {

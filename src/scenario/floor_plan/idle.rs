@@ -40,22 +40,22 @@ impl<'a> Boxed<'a> {
             return Ok(false);
         }
         let [own, around] = [self.shape.area()?, other.shape.area()?];
-        let may_be = around.contains(Shape::middle(&own).0);
-        Ok(may_be && free(&[rings(&[own])], &rings(&[around]))?.is_empty())
+        let may_be = around.contains(Shape::middle(own).0);
+        Ok(may_be && free(&[rings([own])], &rings([around]))?.is_empty())
     }
 
     /// Whether it lies wholly off these floors.
     fn is_off(&self, floors: &[Self]) -> Result<bool, FloorPlanError> {
-        let near = floors.iter().filter(|floor| floor.overlaps(self));
-        let near = near.map(|floor| floor.shape.area());
-        let near: Vec<Area> = near.collect::<Result<_, _>>()?;
+        let beside = floors.iter().filter(|floor| floor.overlaps(self));
+        let areas = beside.map(|floor| floor.shape.area());
+        let near: Vec<&Area> = areas.collect::<Result<_, _>>()?;
         if near.is_empty() {
             return Ok(true);
         }
         let own = self.shape.area()?;
-        let middle = Shape::middle(&own).0;
+        let middle = Shape::middle(own).0;
         let is_on = near.iter().any(|floor| floor.contains(middle));
-        Ok(!is_on && free(&[rings(&[own]), rings(&near)], &Vec::new())?.is_empty())
+        Ok(!is_on && free(&[rings([own]), rings(near)], &Vec::new())?.is_empty())
     }
 }
 
@@ -119,7 +119,7 @@ fn holes_off(floors: &[Boxed]) -> Result<Vec<String>, FloorPlanError> {
             holes: own,
         } = shape.area()?;
         let is_apart = |hole: &Ring| !hole.points().iter().any(|&p| exterior.contains(p));
-        let apart = (1..).zip(&own).filter(|(_, hole)| is_apart(hole));
+        let apart = (1..).zip(own).filter(|(_, hole)| is_apart(hole));
         holes.extend(apart.map(|(k, _)| Shape {
             place: part(&shape.place, "hole", k - 1),
             ..outline(shape, k)
@@ -128,26 +128,20 @@ fn holes_off(floors: &[Boxed]) -> Result<Vec<String>, FloorPlanError> {
     if holes.is_empty() {
         return Ok(Vec::new());
     }
-    let outlines = floors.iter().map(|floor| outline(floor.shape, 0));
-    let outlines: Vec<Shape> = outlines.collect();
-    let outlines: Vec<Boxed> = outlines.iter().map(Boxed::new).collect();
+    let outlines: Vec<Shape> = floors.iter().map(|floor| outline(floor.shape, 0)).collect();
+    let boxed: Vec<Boxed> = outlines.iter().map(Boxed::new).collect();
     let mut off = Vec::new();
     for hole in &holes {
-        if Boxed::new(hole).is_off(&outlines)? {
+        if Boxed::new(hole).is_off(&boxed)? {
             off.push(hole.place.clone());
         }
     }
     Ok(off)
 }
 
-/// Ring `k` of a polygon as one of its own.
+/// Ring `k` of a floor as a floor of its own.
 fn outline(shape: &Shape, k: usize) -> Shape {
-    Shape {
-        place: shape.place.clone(),
-        name: None,
-        rings: vec![shape.rings[k].clone()],
-        is_obstacle: shape.is_obstacle,
-    }
+    Shape::new(shape.place.clone(), vec![shape.rings[k].clone()], false)
 }
 
 /// The first place, and the number of the others.

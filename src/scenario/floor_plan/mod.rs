@@ -24,8 +24,10 @@ mod wkt;
 mod xml;
 
 pub use error::FloorPlanError;
+pub(crate) use idle::notes as without_effect;
 pub use on_floor::{is_line_on_floor, is_on_floor, parts_on_floor};
 pub use shape::Label;
+pub(crate) use shape::Shape;
 pub use unite::{Rings, free, outlines, rings};
 pub use wkt::to_wkt;
 
@@ -33,7 +35,6 @@ use std::path::Path;
 
 use engine::geometry::{Area, Polygon, PolygonError, Ring};
 use engine::math::bounds;
-use shape::Shape;
 
 /// The area that a person needs to stand, m².
 const STANDING_ROOM: f64 = 0.18;
@@ -67,10 +68,8 @@ pub fn read(path: &Path) -> Result<FloorPlan, FloorPlanError> {
 /// Whether the name of a file is that of a floor plan.
 pub fn is_plan(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default();
-    let plans = ["wkt", "geojson", "xml"];
-    plans
-        .into_iter()
-        .any(|plan| extension.eq_ignore_ascii_case(plan))
+    let mut plans = ["wkt", "geojson", "xml"].into_iter();
+    plans.any(|plan| extension.eq_ignore_ascii_case(plan))
 }
 
 /// Reads a file in which every polygon is an obstacle.
@@ -140,12 +139,7 @@ impl FloorPlan {
     /// Those of [`read`]; places count from 0.
     pub fn walkable(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Self, FloorPlanError> {
         let numbered = polygons.iter().enumerate();
-        let shapes = numbered.map(|(k, rings)| Shape {
-            place: format!("[{k}]"),
-            name: None,
-            rings: rings.clone(),
-            is_obstacle: false,
-        });
+        let shapes = numbered.map(|(k, rings)| Shape::new(format!("[{k}]"), rings.clone(), false));
         Self::of(&shapes.collect::<Vec<_>>())
     }
 
@@ -154,30 +148,8 @@ impl FloorPlan {
     /// # Errors
     /// Those of [`Ring::new`](engine::geometry::Ring::new) and [`Polygon::filling`], with coordinates.
     pub fn obstacle(rings: &[Vec<[f64; 2]>]) -> Result<Area, FloorPlanError> {
-        let shape = Shape {
-            place: String::new(),
-            name: None,
-            rings: rings.to_vec(),
-            is_obstacle: true,
-        };
-        shape.area()
-    }
-
-    /// Notes on obstacles off the floor, and on floors inside other floors. Each polygon has its place in messages, its
-    /// rings, and whether it is an obstacle.
-    ///
-    /// # Errors
-    /// Those of [`FloorPlan::walkable`].
-    pub fn without_effect(
-        polygons: impl Iterator<Item = (String, Vec<Vec<[f64; 2]>>, bool)>,
-    ) -> Result<Vec<String>, FloorPlanError> {
-        let shapes = polygons.map(|(place, rings, is_obstacle)| Shape {
-            place,
-            name: None,
-            rings,
-            is_obstacle,
-        });
-        idle::notes(&shapes.collect::<Vec<_>>())
+        let shape = Shape::new(String::new(), rings.to_vec(), true);
+        shape.area().cloned()
     }
 
     /// The solid bodies of the plan: the surroundings of the walkable area, then the obstacles.
@@ -211,11 +183,11 @@ impl FloorPlan {
         let mut names = Vec::new();
         for shape in shapes {
             let area = shape.area()?;
-            names.extend(shape.label(&area));
+            names.extend(shape.label(area));
             if shape.is_obstacle {
-                obstacles.push(area);
+                obstacles.push(area.clone());
             } else {
-                walkable.push(area);
+                walkable.push(area.clone());
             }
         }
         let [width, height] = extent(walkable.iter().chain(&obstacles));

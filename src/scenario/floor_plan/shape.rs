@@ -1,5 +1,7 @@
 //! A polygon of a file → an area with valid rings.
 
+use std::cell::OnceCell;
+
 use super::error::FloorPlanError;
 use engine::geometry::{Area, Polygon, PolygonError, Ring};
 use engine::math::{Vector, bounds};
@@ -21,7 +23,7 @@ pub struct Label {
 }
 
 /// A polygon of a file.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Shape {
     /// Its name in messages.
     pub place: String,
@@ -31,6 +33,8 @@ pub struct Shape {
     pub rings: Vec<Vec<[f64; 2]>>,
     /// Whether it is an obstacle, not walkable area.
     pub is_obstacle: bool,
+    /// Its [`area`](Self::area), once it has been asked for: the polygon does not change afterwards.
+    pub checked: OnceCell<Result<Area, FloorPlanError>>,
 }
 
 /// A geometry of a file.
@@ -74,8 +78,24 @@ pub fn part(place: &str, kind: &str, k: usize) -> String {
 }
 
 impl Shape {
+    /// A polygon without a name of its own.
+    pub fn new(place: String, rings: Vec<Vec<[f64; 2]>>, is_obstacle: bool) -> Self {
+        Self {
+            place,
+            rings,
+            is_obstacle,
+            ..Self::default()
+        }
+    }
+
+    /// The area between its rings.
+    pub fn area(&self) -> Result<&Area, FloorPlanError> {
+        let checked = self.checked.get_or_init(|| self.check());
+        checked.as_ref().map_err(Clone::clone)
+    }
+
     /// Checks each ring and, for obstacles, that the holes lie inside the outline.
-    pub fn area(&self) -> Result<Area, FloorPlanError> {
+    fn check(&self) -> Result<Area, FloorPlanError> {
         let is_far = |p: &&[f64; 2]| p.iter().any(|x| x.abs() > FARTHEST);
         if let Some(&[x, y]) = self.rings.iter().flatten().find(is_far) {
             return Err(self.wrong(&format!(
@@ -115,13 +135,13 @@ impl Shape {
             let points = ring.points();
             points.iter().zip(points.iter().cycle().skip(1))
         });
-        let crossings = edges.filter(|(a, b)| (a.y > y) != (b.y > y));
-        let crossings = crossings.map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y));
-        let mut crossings: Vec<f64> = crossings.collect();
+        let across = edges.filter(|(a, b)| (a.y > y) != (b.y > y));
+        let places = across.map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y));
+        let mut crossings: Vec<f64> = places.collect();
         crossings.sort_by(f64::total_cmp);
         let width = |side: &&[f64]| side[1] - side[0];
-        let widest = crossings.chunks_exact(2);
-        let widest = widest.max_by(|a, b| width(a).total_cmp(&width(b)));
+        let pairs = crossings.chunks_exact(2);
+        let widest = pairs.max_by(|a, b| width(a).total_cmp(&width(b)));
         let [left, right] = widest.map_or([low.x, high.x], |side| [side[0], side[1]]);
         (Vector::new(0.5 * (left + right), y), right - left)
     }

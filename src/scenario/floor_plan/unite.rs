@@ -53,9 +53,9 @@ pub fn free(floors: &[Rings], bodies: &Rings) -> Result<Vec<Area>, FloorPlanErro
 }
 
 /// The rings of `areas`: outlines counterclockwise, holes clockwise.
-pub fn rings(areas: &[Area]) -> Rings {
+pub fn rings<'a>(areas: impl IntoIterator<Item = &'a Area>) -> Rings {
     let reversed = |hole: &Ring| hole.points().iter().rev().copied().collect();
-    let rings = areas.iter().flat_map(|area| {
+    let rings = areas.into_iter().flat_map(|area| {
         let holes = area.holes.iter().map(reversed);
         std::iter::once(area.exterior.points().to_vec()).chain(holes)
     });
@@ -68,9 +68,8 @@ pub fn outlines(obstacles: &[Solid]) -> (Vec<Rings>, Rings) {
         .iter()
         .partition(|obstacle| obstacle.is_unbounded());
     let reversed = |ring: &[Vector]| ring.iter().rev().copied().collect();
-    let floors = unbounded
-        .iter()
-        .map(|floor| floor.rings().map(reversed).collect());
+    let outer = unbounded.iter();
+    let floors = outer.map(|floor| floor.rings().map(reversed).collect());
     let bodies = bounded.iter().flat_map(|obstacle| obstacle.rings());
     (floors.collect(), bodies.map(<[Vector]>::to_vec).collect())
 }

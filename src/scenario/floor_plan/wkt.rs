@@ -44,8 +44,8 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
 /// What is probably wrong in a piece that cannot be read: numbers and points that are separated in another way, or
 /// another format of plans.
 fn formats(piece: &str) -> &'static str {
-    let word = piece.split(|c: char| !c.is_ascii_alphabetic()).next();
-    let word = word.unwrap_or_default().to_ascii_uppercase();
+    let found = piece.split(|c: char| !c.is_ascii_alphabetic()).next();
+    let word = found.unwrap_or_default().to_ascii_uppercase();
     match ["POLYGON", "POINT", "LINE", "GEOMETRYCOLLECTION"]
         .iter()
         .any(|name| word.contains(name))
@@ -141,12 +141,8 @@ fn geometry(wkt: &Wkt<f64>) -> Geometry<&Polygon<f64>> {
 
 fn shape(polygon: &Polygon<f64>, place: String) -> Shape {
     let points = |ring: &LineString<f64>| ring.coords().iter().map(|c| [c.x, c.y]).collect();
-    Shape {
-        place,
-        rings: polygon.rings().iter().map(points).collect(),
-        name: None,
-        is_obstacle: false,
-    }
+    let rings = polygon.rings().iter().map(points).collect();
+    Shape::new(place, rings, false)
 }
 
 /// Areas as a `POLYGON`, or as a `MULTIPOLYGON` unless there is exactly one; holes are clockwise.

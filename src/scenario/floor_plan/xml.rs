@@ -38,27 +38,24 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
         for subroom in room.children().filter(|node| node.has_tag_name("subroom")) {
             let place = format!("room {}, subroom {}", id(room), id(subroom));
             let side = [id(room), id(subroom)];
-            let own = doors.iter().filter(|door| door.sides.contains(&side));
-            let own: Vec<Path> = own.map(|door| door.path.clone()).collect();
-            let walls = subroom
-                .children()
-                .filter(|node| node.has_tag_name("polygon"));
-            let walls = walls.map(|wall| vertices(wall, &place, meters));
-            let walls: Vec<Path> = walls.collect::<Result<_, _>>()?;
+            let doors_of_room = doors.iter().filter(|door| door.sides.contains(&side));
+            let own: Vec<Path> = doors_of_room.map(|door| door.path.clone()).collect();
+            let parts = subroom.children();
+            let polygons = parts.filter(|node| node.has_tag_name("polygon"));
+            let outlines = polygons.map(|wall| vertices(wall, &place, meters));
+            let walls: Vec<Path> = outlines.collect::<Result<_, _>>()?;
+            let rings = vec![outline(walls, own, &place)?];
             shapes.push(Shape {
-                rings: vec![outline(walls, own, &place)?],
-                place: place.clone(),
                 name: caption(room),
-                is_obstacle: false,
+                ..Shape::new(place.clone(), rings, false)
             });
             for obstacle in elements(subroom, "obstacle") {
                 for polygon in elements(obstacle, "polygon") {
                     let place = format!("{place}, obstacle {}", id(obstacle));
+                    let rings = vec![vertices(polygon, &place, meters)?];
                     shapes.push(Shape {
-                        rings: vec![vertices(polygon, &place, meters)?],
-                        place,
                         name: caption(obstacle),
-                        is_obstacle: true,
+                        ..Shape::new(place, rings, true)
                     });
                 }
             }
@@ -198,9 +195,8 @@ fn outline(walls: Vec<Path>, doors: Vec<Path>, place: &str) -> Result<Path, Floo
 /// Takes the path that begins or ends at a point, in the direction away from it.
 fn next(paths: &mut Vec<Path>, from: [f64; 2]) -> Option<Path> {
     let is_near = |end: Option<&[f64; 2]>| end.is_some_and(|&end| distance(end, from) <= GAP);
-    let k = paths
-        .iter()
-        .position(|path| is_near(path.first()) || is_near(path.last()))?;
+    let mut ends = paths.iter();
+    let k = ends.position(|path| is_near(path.first()) || is_near(path.last()))?;
     let mut path = paths.remove(k);
     if !is_near(path.first()) {
         path.reverse();

@@ -132,8 +132,8 @@ pub fn named(name: &str, parameters: &Parameters) -> Result<Blend, ProfileError>
         return Ok(Blend::single(plain(name, parameters)?, all.sph()));
     };
     let profiles = [plain(first, parameters)?, plain(second, parameters)?];
-    let steps = BLEND_DENSITIES.into_iter().zip(profiles);
-    let steps = steps.map(|(at_density, profile)| BlendStep {
+    let densities = BLEND_DENSITIES.into_iter().zip(profiles);
+    let steps = densities.map(|(at_density, profile)| BlendStep {
         at_density,
         profile,
     });

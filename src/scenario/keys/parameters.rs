@@ -245,10 +245,9 @@ impl Parameters {
             ("wall_stiffness", self.wall_stiffness),
             ("contact_scale", self.contact_scale),
             ("wall_contact_scale", self.wall_contact_scale),
-        ];
-        let own = own
-            .into_iter()
-            .find(|(_, given)| given.is_some_and(|value| !value.is_finite()));
+        ]
+        .into_iter()
+        .find(|(_, given)| given.is_some_and(|value| !value.is_finite()));
         let wrong = own.map(|(name, _)| name).or(self.not_finite_in_part());
         wrong.map_or(Ok(()), Err)
     }

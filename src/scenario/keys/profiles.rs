@@ -10,7 +10,7 @@ use crate::keys::catalog::{ALIASES, NavigationKind, Parameters};
 use crate::keys::limits::HIGHEST_DENSITY;
 
 /// A name (see `sandbox list`), or a profile or blend defined in full
-#[derive(Debug, Clone, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, JsonSchema)]
 #[schemars(untagged)]
 pub enum ProfileChoice {
     Named(ProfileName),
@@ -18,13 +18,13 @@ pub enum ProfileChoice {
 }
 
 /// The name of a profile or blend
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(transparent)]
 #[schemars(extend("enum" = known_names()))]
 pub struct ProfileName(pub String);
 
 /// A profile or blend defined in full, with exactly one of `base`, `navigation` and `blend`.
-#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(extend("oneOf" = ["base", "navigation", "blend"].map(given)))]
 pub struct CustomProfile {
@@ -46,7 +46,7 @@ pub struct CustomProfile {
 }
 
 /// One profile of a blend.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Step {
     /// ρ^j (§4.4), P/m²: the density at which this profile acts alone. Between two densities both are blended.

@@ -2,18 +2,19 @@
 
 use schemars::JsonSchema;
 use serde::de::Error;
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use serde_untagged::UntaggedEnumVisitor;
 
 use crate::error::Problem;
 use crate::floor_plan;
 use crate::keys::limits::FARTHEST;
+use engine::geometry::Ring as Checked;
 use engine::math::Vector;
 use engine::scene::Region;
 
 /// A point [x, y] in meters
-#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Point(#[schemars(inner(range(min = -FARTHEST, max = FARTHEST)))] pub [f64; 2]);
 
@@ -24,13 +25,19 @@ impl From<Point> for Vector {
 }
 
 /// A ring: its corners in order, in either orientation
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Ring(#[schemars(length(min = 3))] pub Vec<Point>);
 
+impl From<&Checked> for Ring {
+    fn from(ring: &Checked) -> Self {
+        Self(ring.points().iter().map(|&p| Point(p.into())).collect())
+    }
+}
+
 /// A polygon: its corners, or its rings
-#[derive(Debug, Clone, JsonSchema)]
-#[schemars(untagged)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[serde(untagged)]
 pub enum Outline {
     Ring(Ring),
     Rings(#[schemars(length(min = 1))] Vec<Ring>),

@@ -119,9 +119,9 @@ impl Measure for BodyForces {
             peak.map(|(person, _)| person.position.y),
             peak.map(|(person, _)| person.force / WIDTH),
         ];
-        let above = seen.above().into_iter();
-        let above = above.flat_map(|(people, samples)| [f64::from(people), samples * secs]);
-        let above = above.map(|value| peak.map(|_| value));
+        let counts = seen.above().into_iter();
+        let values = counts.flat_map(|(people, samples)| [f64::from(people), samples * secs]);
+        let above = values.map(|value| peak.map(|_| value));
         most.into_iter().chain(above).collect()
     }
 

@@ -70,8 +70,8 @@ impl Measure for Density {
         }
         let region = self.region.map(Region::from);
         let positions = &frame.agents.position;
-        let inside = frame.agents.present();
-        let inside = inside.filter(|&i| region.is_none_or(|r| r.contains(positions[i])));
+        let there = frame.agents.present();
+        let inside = there.filter(|&i| region.is_none_or(|r| r.contains(positions[i])));
         let densities: Vec<f64> = inside.map(|i| densities[i]).collect();
         let found = MeanStd::of(&densities);
         *seen = [found.map(|of| of.mean), found.map(|of| of.population_std())];

@@ -46,16 +46,16 @@ impl Left {
     pub fn of(simulation: &Simulation, journey: Option<u16>) -> Self {
         let begun = simulation.progress().begun.iter().enumerate();
         let asked = |number: usize| journey.is_none_or(|journey| usize::from(journey) == number);
-        let started = begun.filter(|(k, _)| asked(*k)).map(|(_, count)| count);
-        let started: u32 = started.sum();
+        let counts = begun.filter(|(k, _)| asked(*k)).map(|(_, count)| count);
+        let started: u32 = counts.sum();
         let arrivals = simulation.outcome().arrivals.iter();
-        let left = arrivals.filter_map(|arrival| {
+        let times = arrivals.filter_map(|arrival| {
             let trip = arrival
                 .trip
                 .filter(|trip| asked(usize::from(trip.journey)))?;
             Some((arrival.time, arrival.time - trip.entered, trip.waited))
         });
-        let left: Vec<(f64, f64, f64)> = left.collect(); // by time, as arrivals are
+        let left: Vec<(f64, f64, f64)> = times.collect(); // by time, as arrivals are
         let mean = |value: fn(&(f64, f64, f64)) -> f64| {
             let sum: f64 = left.iter().map(value).sum();
             (!left.is_empty()).then(|| sum / left.len() as f64)

@@ -52,6 +52,9 @@ impl Measure for Exposure {
     }
 
     fn quantities(&self) -> Vec<Quantity> {
+        let named = |short: &str, (what, unit, meaning): (&str, &'static str, String)| {
+            Quantity::new(format!("{}_{short}_{what}", self.name()), unit, &meaning)
+        };
         let exposed = |condition: &str, short: &str| {
             [
                 (
@@ -70,9 +73,7 @@ impl Measure for Exposure {
                     format!("longest total time of one person {condition}"),
                 ),
             ]
-            .map(|(what, unit, meaning)| {
-                Quantity::new(format!("{}_{short}_{what}", self.name()), unit, &meaning)
-            })
+            .map(|value| named(short, value))
         };
         let dense = DENSITIES.iter().flat_map(|density| {
             let above = format!("above {density} P/m² (h = √5 m)");
@@ -93,15 +94,12 @@ impl Measure for Exposure {
                     "s",
                     format!("longest time without a break with at least one person {above}"),
                 ),
-            ];
-            let alarm = alarm.map(|(what, unit, meaning)| {
-                Quantity::new(format!("{}_{short}_{what}", self.name()), unit, &meaning)
-            });
+            ]
+            .map(|value| named(&short, value));
             exposed(&above, &short).into_iter().chain(alarm)
         });
-        dense
-            .chain(exposed("slower than 0.2 m/s", "slow"))
-            .collect()
+        let slow = exposed("slower than 0.2 m/s", "slow");
+        dense.chain(slow).collect()
     }
 
     fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
@@ -118,19 +116,15 @@ impl Measure for Exposure {
             let people = f64::from(exposed.people);
             [people, exposed.person_secs, exposed.longest_secs]
         };
-        let dense = exposed
-            .iter()
-            .zip(&seen.alarms)
-            .flat_map(|(exposed, alarm)| {
-                let (people, longest) = (f64::from(alarm.people), alarm.spell.longest() * secs);
-                of(exposed).into_iter().chain([alarm.area, people, longest])
-            });
+        let pairs = exposed.iter().zip(&seen.alarms);
+        let dense = pairs.flat_map(|(exposed, alarm)| {
+            let (people, longest) = (f64::from(alarm.people), alarm.spell.longest() * secs);
+            of(exposed).into_iter().chain([alarm.area, people, longest])
+        });
         let slow = of(&exposed[DENSITIES.len()]);
         let was_seen = *secs > 0.0;
-        dense
-            .chain(slow)
-            .map(|value| was_seen.then_some(value))
-            .collect()
+        let all = dense.chain(slow);
+        all.map(|value| was_seen.then_some(value)).collect()
     }
 
     fn data(&self, (seen, secs): &Self::Seen) -> Option<(String, Value)> {

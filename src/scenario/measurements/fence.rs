@@ -88,9 +88,8 @@ impl Fence {
 
     /// Whether the straight path from `a` to `b` leads into an obstacle.
     pub(super) fn is_crossed(&self, a: Vector, b: Vector) -> bool {
-        self.touched(a, b)
-            .flat_map(|cell| &self.cells[cell])
-            .any(|&k| self.edges[k as usize].is_crossed(a, b))
+        let mut near = self.touched(a, b).flat_map(|cell| &self.cells[cell]);
+        near.any(|&k| self.edges[k as usize].is_crossed(a, b))
     }
 
     /// Is `p` inside an obstacle? Counts the edges that a ray to the right crosses.

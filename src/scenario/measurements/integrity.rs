@@ -103,9 +103,8 @@ impl Watched {
     pub fn observe(&mut self, simulation: &Simulation) {
         let frame = simulation.frame();
         let agents = frame.agents;
-        let fence = self
-            .fence
-            .get_or_insert_with(|| Fence::new(&simulation.scene().walls));
+        let new = || Fence::new(&simulation.scene().walls);
+        let fence = self.fence.get_or_insert_with(new);
         let period = simulation.scene().period;
         self.last.resize(agents.entered() as usize, None);
         for (&id, &position) in agents.id.iter().zip(&agents.position) {

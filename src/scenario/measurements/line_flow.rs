@@ -147,16 +147,15 @@ impl Measure for LineFlow {
         let frame = simulation.frame();
         let agents = frame.agents;
         let arrivals = &simulation.outcome().arrivals;
-        let gone = &arrivals[seen.arrivals..];
+        let new = &arrivals[seen.arrivals..];
         seen.arrivals = arrivals.len();
         let moment = Moment {
             clock: frame.clock,
             scene: simulation.scene(),
             entered: agents.entered() as usize,
         };
-        let gone = gone.iter().map(|arrival| (arrival.id, arrival.position));
-        let there = agents.present();
-        let there = there.map(|i| (agents.id[i], agents.position[i]));
+        let gone = new.iter().map(|arrival| (arrival.id, arrival.position));
+        let there = agents.present().map(|i| (agents.id[i], agents.position[i]));
         self.see(seen, &moment, gone, there);
     }
 
@@ -177,6 +176,39 @@ struct Moment<'a> {
     entered: usize,
 }
 
+/// The line in a scene, with its continuations to the next walls.
+struct Crossing<'a> {
+    line: Line,
+    beside: [Line; 2],
+    scene: &'a Scene,
+}
+
+impl Crossing<'_> {
+    /// The shortest way, also across the end of the period.
+    fn way(&self, from: Vector, to: Vector) -> Vector {
+        let way = to - from;
+        let period = self.scene.period;
+        period.map_or(way, |period| period.shortest(way))
+    }
+
+    /// Moves a track to its next position. Returns after which part of the move it passed the line, if it did.
+    fn passed(&self, track: &mut Track, position: Vector) -> Option<f64> {
+        // A move across the end of the period is seen at both ends.
+        let last = std::mem::replace(&mut track.last, position);
+        let way = self.way(last, position);
+        let leaving = self.line.crossed(last, last + way);
+        let crossed = leaving.or_else(|| self.line.crossed(position - way, position));
+        if let Some((part, is_forward)) = crossed {
+            return track.balance.passes(is_forward).then_some(part);
+        }
+        let mut beside = self.beside.iter();
+        if let Some((_, is_forward)) = beside.find_map(|line| line.crossed(last, last + way)) {
+            track.balance.goes_around(is_forward);
+        }
+        None
+    }
+}
+
 impl LineFlow {
     /// The values, by their names, and the data for people in `tracks` from the time `at` in it, seconds, on. They are
     /// measured as in a run of `scene` that begins at `at`.
@@ -192,8 +224,8 @@ impl LineFlow {
                 let ([first, last], near) = (times[p], tracks.rounding());
                 (first - near..=last + near).contains(&time)
             };
-            let there = (0..times.len()).filter(is_there);
-            let there = there.map(|p| (p as u32, tracks.place_at(p, time)));
+            let people = (0..times.len()).filter(is_there);
+            let there = people.map(|p| (p as u32, tracks.place_at(p, time)));
             let moment = Moment {
                 clock: &clock,
                 scene,
@@ -219,41 +251,23 @@ impl LineFlow {
         let line = self.line();
         let before = seen.times.len();
         seen.tracks.resize(moment.entered, None);
-        let way = |from: Vector, to: Vector| {
-            let way = to - from;
-            scene.period.map_or(way, |period| period.shortest(way))
+        let beside = *seen.beside.get_or_insert_with(|| line.beside(&scene.walls));
+        let crossing = Crossing {
+            line,
+            beside,
+            scene,
         };
-        let new = || line.beside(&scene.walls);
-        let beside = *seen.beside.get_or_insert_with(new);
-        let mut passed = |track: &mut Track, position: Vector| {
-            // A move across the end of the period is seen at both ends.
-            let (last, way) = (track.last, way(track.last, position));
-            let leaving = line.crossed(last, last + way);
-            let crossed = leaving.or_else(|| line.crossed(position - way, position));
-            match crossed {
-                Some((part, is_forward)) if track.balance.passes(is_forward) => {
-                    seen.times.push(now - step + step * part);
-                }
-                Some(_) => {}
-                None => {
-                    let around = beside
-                        .iter()
-                        .find_map(|line| line.crossed(last, last + way));
-                    if let Some((_, is_forward)) = around {
-                        track.balance.goes_around(is_forward);
-                    }
-                }
-            }
-            track.last = position;
-        };
+        let time_of = |part: f64| now - step + step * part;
         for (id, position) in gone {
             if let Some(mut track) = seen.tracks[id as usize].take() {
-                passed(&mut track, position);
+                let passed = crossing.passed(&mut track, position);
+                seen.times.extend(passed.map(time_of));
             }
         }
         let every = clock.frame_at(EVERY_SECS).max(1);
         let is_due = clock.frame().is_multiple_of(every);
         let region = self.region.map(Region::from);
+        let is_inside = |p: Vector| region.is_some_and(|region| region.contains(p));
         let mut sample = Sample {
             time: now,
             ..Sample::default()
@@ -264,16 +278,17 @@ impl LineFlow {
                 sampled: [None; 2],
                 balance: Balance::default(),
             });
-            passed(track, position);
-            let is_inside = |p: Vector| region.is_some_and(|region| region.contains(p));
+            let passed = crossing.passed(track, position);
+            seen.times.extend(passed.map(time_of));
             if is_due {
                 sample.agents += u32::from(is_inside(position));
                 if let [Some(first), Some(middle)] = track.sampled
                     && is_inside(middle)
                     && let Some(before) = seen.samples.last_mut()
                 {
+                    let way = crossing.way(first, position);
                     before.moving += 1;
-                    before.speeds += way(first, position).norm() / (2.0 * every as f64 * step);
+                    before.speeds += way.norm() / (2.0 * every as f64 * step);
                 }
                 track.sampled = [track.sampled[1], Some(position)];
             }
@@ -288,8 +303,8 @@ impl LineFlow {
         let flow = self.flow(&seen.times);
         let region = self.region.map(Region::from);
         let ends = flow.map_or([f64::NAN; 2], |(ends, _)| ends);
-        let samples = seen.samples.iter();
-        let samples = samples.filter(|sample| (ends[0]..=ends[1]).contains(&sample.time));
+        let all = seen.samples.iter();
+        let samples = all.filter(|sample| (ends[0]..=ends[1]).contains(&sample.time));
         let (mut count, mut agents, mut moving, mut speeds) = (0.0, 0.0, 0.0, 0.0);
         for sample in samples {
             count += 1.0;

@@ -108,17 +108,15 @@ fn outside(simulation: &Simulation, number: u16, line: &Queue) -> Vec<usize> {
     around.sort_by(|(a, _), (b, _)| a.total_cmp(b)); // stable
     let count = length(around.iter().map(|&(distance, _)| distance), 0.0);
     let beyond = joined.iter().skip(line.room() as usize).map(|&(_, i)| i);
-    beyond
-        .chain(around[..count as usize].iter().map(|&(_, i)| i))
-        .collect()
+    let nearest = around[..count as usize].iter().map(|&(_, i)| i);
+    beyond.chain(nearest).collect()
 }
 
 /// The distance from `p` to the line on which people stand, meters.
 fn distance(line: &Queue, p: Vector) -> f64 {
     let end = line.spot(line.room() as usize);
     let points: Vec<Vector> = line.path.iter().copied().chain([end]).collect();
-    let sides = points
-        .windows(2)
-        .map(|side| (nearest_on(p, side[0], side[1]) - p).norm());
+    let pairs = points.windows(2);
+    let sides = pairs.map(|side| (nearest_on(p, side[0], side[1]) - p).norm());
     sides.fold(f64::INFINITY, f64::min)
 }

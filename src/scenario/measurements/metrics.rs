@@ -105,9 +105,8 @@ impl Metrics {
 
     /// The data of measurements that have more than values, by name.
     pub fn data(&self) -> impl Iterator<Item = (String, Value)> {
-        self.running
-            .iter()
-            .filter_map(|measurement| measurement.data())
+        let all = self.running.iter();
+        all.filter_map(|measurement| measurement.data())
     }
 
     /// What each measurement has seen so far, as JSON.

@@ -99,12 +99,8 @@ impl Oscillation {
         let [columns, rows] = self.boxes(&self.region.into());
         let boxes = columns * rows;
         let series = |k: usize| -> Option<Vec<[f64; 2]>> {
-            seen.velocities
-                .iter()
-                .skip(k)
-                .step_by(boxes)
-                .copied()
-                .collect()
+            let of_box = seen.velocities.iter().skip(k).step_by(boxes);
+            of_box.copied().collect()
         };
         (0..boxes).map(series).collect()
     }

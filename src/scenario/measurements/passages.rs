@@ -69,8 +69,8 @@ impl Openings {
             return Vec::new();
         };
         let start = [simulation.frame().agents.position[i]];
-        let course = start.into_iter().chain(course(simulation, ways, (i, to)));
-        let course: Vec<Vector> = course.collect();
+        let points = start.into_iter().chain(course(simulation, ways, (i, to)));
+        let course: Vec<Vector> = points.collect();
         let crossed = course.windows(2).flat_map(|pair| {
             let mut crossed = self.all.crossed(pair[0], pair[1]);
             crossed.sort_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -108,8 +108,8 @@ impl Openings {
         let length = distance + self::length(&course);
         if let (Some(second), Some(map)) = (course.get(1), ways.map_to(to)) {
             let bits = [first.x, first.y, second.x, second.y].map(f64::to_bits);
-            let rest = known.entry((map, bits));
-            let rest = rest.or_insert_with(|| self.along(&course));
+            let entry = known.entry((map, bits));
+            let rest = entry.or_insert_with(|| self.along(&course));
             for &(k, beyond) in &*rest {
                 if found.iter().all(|&(other, _)| other != k) {
                     found.push((k, distance + beyond));
@@ -161,8 +161,6 @@ fn course(simulation: &Simulation, ways: &Ways, (i, to): (usize, Destination)) -
 }
 
 fn length(course: &[Vector]) -> f64 {
-    course
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).norm())
-        .sum()
+    let legs = course.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+    legs.sum()
 }

@@ -86,8 +86,8 @@ impl Push {
 
     fn results(&self, seen: &Seen) -> Vec<Option<f64>> {
         let people = seen.people.iter();
-        let row = people.filter_map(|(_, places)| Pushed::of(places, seen.every));
-        let mut row: Vec<Pushed> = row.collect();
+        let pushed = people.filter_map(|(_, places)| Pushed::of(places, seen.every));
+        let mut row: Vec<Pushed> = pushed.collect();
         row.sort_by(|a, b| a.place.total_cmp(&b.place));
         let of_each = |value: fn(&Pushed) -> f64| {
             let row = &row;
@@ -118,7 +118,7 @@ impl Measure for Push {
     }
 
     fn quantities(&self) -> Vec<Quantity> {
-        let of_row = [
+        let fronts = [
             (
                 "front_m_per_s",
                 "m/s",
@@ -135,7 +135,7 @@ impl Measure for Push {
                 "largest sum of the speeds of all people but the first at one time",
             ),
         ];
-        let of_row = Quantity::all(self.name(), &of_row);
+        let of_row = Quantity::all(self.name(), &fronts);
         let of_each = |what: &str, [unit, end]: [&'static str; 2], meaning: &str| {
             let name = |k| format!("{}_{what}_{k}_{end}", self.name());
             let quantity = |k| Quantity::new(name(k), unit, &format!("{meaning} {k}"));

@@ -24,8 +24,7 @@ pub struct Quantity {
 impl Measurement {
     /// The names of all measurements that have values, each with what it measures, for usual keys.
     pub fn all_quantities() -> Vec<(String, Vec<Quantity>)> {
-        let names: Vec<BTreeMap<String, Value>> = embedded("examples.json", EXAMPLES);
-        let names = names
+        let names = embedded::<Vec<BTreeMap<String, Value>>>("examples.json", EXAMPLES)
             .into_iter()
             .filter_map(|example| example.into_keys().next());
         let examples: Vec<Self> = embedded("examples.json", EXAMPLES);

@@ -116,10 +116,8 @@ impl Queues {
     /// Observes the queues of a frame with the headways of its agents, by id: once every
     /// [`EVERY`](super::standing::EVERY) seconds.
     pub(super) fn observe(&mut self, headways: &[Option<Headway>], simulation: &Simulation) {
-        let openings = self
-            .openings
-            .take()
-            .unwrap_or_else(|| Openings::of(simulation.scene()));
+        let known = self.openings.take();
+        let openings = known.unwrap_or_else(|| Openings::of(simulation.scene()));
         let now = simulation.frame().clock.time();
         let slow = slow(headways, simulation, &openings);
         let mut waiting = waiting(&slow, simulation);
@@ -156,14 +154,13 @@ impl Queues {
         let mut queues: Vec<&Queue> = self.queues.iter().collect();
         queues.sort_by_key(|queue| std::cmp::Reverse(queue.agents)); // stable
         let longest = queues.into_iter().map(|queue| {
-            let place = match queue.passage {
+            let number = match queue.passage {
                 Passage::Opening(k) => openings.door(k),
                 Passage::Aim(Aim::Place(number)) => Some(number),
                 Passage::Aim(_) => None,
             };
-            let place_number = place;
-            let outside = place.and_then(|number| self.lines.outside(number));
-            let place = place.map(|number| &places[usize::from(number)]);
+            let outside = number.and_then(|number| self.lines.outside(number));
+            let place = number.map(|number| &places[usize::from(number)]);
             let at = match (place, queue.passage) {
                 (Some(place), _) => middle(place),
                 (None, Passage::Opening(k)) => openings.middle(k),
@@ -181,7 +178,7 @@ impl Queues {
                 agents: queue.agents,
                 at_secs: queue.at_secs,
                 density_per_m2: queue.density,
-                holds: place_number.is_some_and(|number| holds(simulation.scene(), number)),
+                holds: number.is_some_and(|number| holds(simulation.scene(), number)),
                 outside,
             }
         });
@@ -248,13 +245,14 @@ fn waiting(slow: &[Slow], simulation: &Simulation) -> Vec<Waiting> {
         aims.extend((!has_line(one.aim)).then_some((one.aim, one.length, k)));
     }
     aims.sort_by(|(aim, ..), (other, ..)| aim.order(other)); // stable
-    let openings = openings.into_iter();
-    let openings = openings.map(|(opening, agents)| (Passage::Opening(opening), agents));
-    let aims = aims.chunk_by(|(aim, ..), (other, ..)| aim == other);
-    let aims = aims.map(|agents| {
-        let all = agents.iter().map(|&(_, length, k)| (length, k));
-        (Passage::Aim(agents[0].0), all.collect())
-    });
+    let pairs = openings.into_iter();
+    let openings = pairs.map(|(opening, agents)| (Passage::Opening(opening), agents));
+    let aims = aims
+        .chunk_by(|(aim, ..), (other, ..)| aim == other)
+        .map(|agents| {
+            let all = agents.iter().map(|&(_, length, k)| (length, k));
+            (Passage::Aim(agents[0].0), all.collect())
+        });
     let all = openings.chain(aims).map(|(passage, agents)| Waiting {
         passage,
         agents,
@@ -299,8 +297,8 @@ impl Waiting {
         let front = &slow[front];
         // Doors come first, then the narrower ones.
         let others = front.ahead.iter().filter(|&&(other, _)| other < opening);
-        let passages = others.map(|&(other, away)| (Passage::Opening(other), away));
-        let mut passages = passages.chain([(Passage::Aim(front.aim), front.length)]);
+        let before = others.map(|&(other, away)| (Passage::Opening(other), away));
+        let mut passages = before.chain([(Passage::Aim(front.aim), front.length)]);
         passages.any(|(passage, away)| {
             let mut all = all.iter();
             all.find(|one| one.passage == passage)
@@ -327,8 +325,8 @@ fn median_density(simulation: &Simulation, agents: impl IntoIterator<Item = usiz
         return None;
     }
     let all = &simulation.frame().fields.density;
-    let densities = agents.into_iter().filter_map(|i| all.get(i).copied());
-    let densities: Vec<f64> = densities.collect();
+    let in_front = agents.into_iter().filter_map(|i| all.get(i).copied());
+    let densities: Vec<f64> = in_front.collect();
     (densities.len() >= CROWD).then(|| Range::of(&densities).median)
 }
 

@@ -180,8 +180,7 @@ impl Measure for Walks {
     }
 
     fn data(&self, seen: &Seen) -> Option<(String, Value)> {
-        let walks = seen.walks.iter().flatten();
-        let walks: Vec<&Walk> = walks.map(|(walk, _)| walk).collect();
+        let walks: Vec<&Walk> = seen.walks.iter().flatten().map(|(walk, _)| walk).collect();
         Some((self.name().to_owned(), json!(walks)))
     }
 }

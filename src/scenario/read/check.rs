@@ -15,9 +15,11 @@ use crate::keys::people::{Behavior, People};
 use crate::keys::profiles::{ProfileChoice, ProfileName};
 use crate::keys::shapes::region;
 use crate::read::draft::{Draft, Inputs};
+use crate::read::plans::Plans;
 use crate::read::scenario::Scenario;
 use crate::read::{curves, data, late, plans, preset};
 use crate::scene::need::Need;
+use crate::scene::origin::Items;
 use crate::scene::people::Population;
 use crate::scene::surroundings::Surroundings;
 use crate::scene::{
@@ -30,7 +32,7 @@ use engine::forces::push::PushForce;
 use engine::geometry::Polygon;
 use engine::math::{Vector, direction};
 use engine::period::Period;
-use engine::profile::Override;
+use engine::profile::{Blend, Override};
 use engine::scene::{Push, Routing, Scene};
 
 impl Draft {
@@ -40,14 +42,15 @@ impl Draft {
         without_schema(&mut document)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut notes = Vec::new();
-        let mut plans = plans::fill(&mut document, folder, &mut notes)?;
-        plans.extend(curves::fill(&mut document, folder)?);
+        let (plans, mut files) = Plans::take(&mut document, folder, &mut notes)?;
+        files.extend(curves::fill(&mut document, folder)?);
         let mut keys = Self::check_keys(&document)?;
-        plans.extend(data::fill(&mut document, &mut keys, folder, &mut notes)?);
+        plans.enter(&mut keys);
+        files.extend(data::fill(&mut document, &mut keys, folder, &mut notes)?);
         let need = Need::of(&keys, &numerics::first_clock(&keys), duration(&keys))?;
         Ok(Self {
             document,
-            plans,
+            files,
             keys,
             notes,
             need,
@@ -110,48 +113,18 @@ impl Draft {
     /// Checks relations between values and places the agents. The name of the file `path` is the default name of the
     /// scenario; the file without settings has its end at `last`, seconds, or the run if that is later.
     pub(super) fn built(self, path: &Path, last: f64) -> Result<Scenario, Problem> {
-        // A part of the plan without effect is the likely cause of a place off the floor.
-        let of_plan = surroundings::without_effect(&self.keys).unwrap_or_default();
-        self.built_on_floor(path, last).map_err(|problem| {
-            match of_plan
-                .first()
-                .filter(|_| problem.reason.contains("outside of the walkable area"))
-            {
-                Some(note) => Problem::new(problem.path, format!("{}; {note}", problem.reason)),
-                None => problem,
-            }
-        })
-    }
-
-    fn built_on_floor(self, path: &Path, last: f64) -> Result<Scenario, Problem> {
         let keys = &self.keys;
         periodic::check_keys(keys)?;
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let Surroundings { solids, behind } = surroundings::surroundings(keys)?;
-        let mut scene = empty_scene(keys, solids);
-        scene.behind.clone_from(&behind);
+        let Surroundings { solids, behind } = Surroundings::of(keys)?;
+        let without_effect = surroundings::without_effect(keys);
         let default = ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned()));
         let choice = keys.profile.as_ref().unwrap_or(&default);
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
-        let mut notes = self.notes;
-        scene.journeys = journeys::journeys(keys, (&scene.walls, &behind), &mut notes)?;
-        let entered = Population::new(keys, &blend, &behind, &mut scene).enter();
-        let (of_people, items) =
-            entered.map_err(|problem| meant::clearer(problem, &self.document))?;
-        notes.extend(of_people);
-        let duration_secs = duration(keys);
-        overcrowded::check(keys, (&scene, &items), duration_secs)?;
-        measurements::check(&keys.measurements, &scene.journeys.journeys)?;
-        off_floor::check(keys, &scene)?;
-        off_floor::check_waypoints(&scene, &behind)?;
-        off_floor::check_starts(&items.origins(keys, &scene), &behind)?;
-        add_pushes(&mut scene, &keys.events)?;
-        periodic::check(keys, &scene)?;
-        scene.routing = Routing {
-            choice: keys.route_choice.unwrap_or_default(),
-            knowledge: keys.knowledge,
-        };
-        ways::add((keys, &items), &mut scene, &behind, &mut notes)?;
+        let mut scene = empty_scene(keys, solids);
+        scene.behind = behind;
+        let mut notes = self.notes.clone();
+        let populated = self.populate(&mut scene, &blend, &mut notes);
+        let items = populated.map_err(|problem| likely_cause(problem, &without_effect))?;
         scene.integrator = keys.integrator.for_scene(&scene);
         scene.clock = numerics::clock_for(keys, &scene)?;
         let placed = scene.agents.len() as u64;
@@ -159,14 +132,17 @@ impl Draft {
         let entering = self.need.entering - fewer;
         notes.extend(doubts::notes(keys, &scene, entering, last));
         notes.extend(slits::note(&scene.walls));
-        notes.extend(surroundings::without_effect(keys)?);
+        notes.extend(without_effect?);
         let view = view::of(keys.view.as_ref(), &scene).under("view")?;
         notes.extend(view::unseen(keys, &view.region));
+        let mut document = self.document;
+        plans::write(&self.files, keys, &mut document);
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         Ok(Scenario {
             name: keys.name.clone().unwrap_or_else(|| stem.into_owned()),
             description: keys.description.clone().unwrap_or_default(),
             seed: seed(keys),
-            duration_secs,
+            duration_secs: duration(keys),
             stop: keys.stop.clone(),
             measurements: keys.measurements.clone(),
             view,
@@ -178,12 +154,50 @@ impl Draft {
             },
             entering,
             profile_name: blend.name,
-            document: self.document,
-            files: self.plans,
+            document,
+            files: self.files,
             notes,
             passage_width: widest::passable(&items.origins(keys, &scene)),
             scene,
         })
+    }
+
+    /// Adds the places, the people and their ways to a scene, and checks that all lie on the floor.
+    fn populate(
+        &self,
+        scene: &mut Scene,
+        blend: &Blend,
+        notes: &mut Vec<String>,
+    ) -> Result<Items, Problem> {
+        let (keys, behind) = (&self.keys, &scene.behind.clone());
+        scene.journeys = journeys::journeys(keys, (&scene.walls, behind), notes)?;
+        let entered = Population::new(keys, blend, behind, scene).enter();
+        let (of_people, items) =
+            entered.map_err(|problem| meant::clearer(problem, &self.document))?;
+        notes.extend(of_people);
+        overcrowded::check(keys, (scene, &items), duration(keys))?;
+        measurements::check(&keys.measurements, &scene.journeys.journeys)?;
+        off_floor::check(keys, scene)?;
+        off_floor::check_waypoints(scene, behind)?;
+        off_floor::check_starts(&items.origins(keys, scene), behind)?;
+        add_pushes(scene, &keys.events)?;
+        periodic::check(keys, scene)?;
+        scene.routing = Routing {
+            choice: keys.route_choice.unwrap_or_default(),
+            knowledge: keys.knowledge,
+        };
+        ways::add((keys, &items), scene, behind, notes)?;
+        Ok(items)
+    }
+}
+
+/// A problem with its likely cause: for a place off the floor, a part of the plan without effect.
+fn likely_cause(problem: Problem, without_effect: &Result<Vec<String>, Problem>) -> Problem {
+    match without_effect.as_deref().unwrap_or_default().first() {
+        Some(note) if problem.reason.contains("outside of the walkable area") => {
+            Problem::new(problem.path, format!("{}; {note}", problem.reason))
+        }
+        _ => problem,
     }
 }
 
@@ -204,9 +218,8 @@ fn parsed<'a, T: Deserialize<'a>>(value: &'a Value) -> Result<T, Problem> {
 
 /// Removes `$schema`, by which editors find the schema.
 fn without_schema(document: &mut Value) -> Result<(), Problem> {
-    let given = document
-        .as_object_mut()
-        .and_then(|document| document.remove("$schema"));
+    let object = document.as_object_mut();
+    let given = object.and_then(|document| document.remove("$schema"));
     match given {
         None | Some(Value::String(_)) => Ok(()),
         Some(_) => {
@@ -262,8 +275,8 @@ fn add_pushes(scene: &mut Scene, events: &[file::Event]) -> Result<(), Problem> 
     for (k, event) in events.iter().enumerate() {
         let place = format!("events[{k}]");
         let given = (event.for_secs, event.region);
-        let changes = [&event.open, &event.close, &event.release];
-        let changes = changes.into_iter().flatten().count();
+        let given_changes = [&event.open, &event.close, &event.release];
+        let changes = given_changes.into_iter().flatten().count();
         let (lasting, corners) = match (given, changes) {
             ((Some(lasting), Some(corners)), 0) => (lasting, corners),
             ((None, None), 1) => continue,

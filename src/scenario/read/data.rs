@@ -52,8 +52,8 @@ pub fn fill(
         for key in ["trajectory", "at_secs", "until_secs", "unit", "fps"] {
             object.remove(key);
         }
-        let list = serde_json::to_value(&people);
-        let list = list.map_err(|error| Problem::new(FILE, error.to_string()))?;
+        let list =
+            serde_json::to_value(&people).map_err(|error| Problem::new(FILE, error.to_string()))?;
         object.insert("people".to_owned(), list);
     }
     given.people = Some(people);

@@ -29,8 +29,8 @@ pub fn rename_old_keys(document: &mut Value) -> Result<(), Problem> {
             rename(document, &key)?;
             continue;
         };
-        let measurements = document.get_mut("measurements");
-        let measurements = measurements.and_then(Value::as_array_mut);
+        let list = document.get_mut("measurements");
+        let measurements = list.and_then(Value::as_array_mut);
         for (k, measurement) in measurements.into_iter().flatten().enumerate() {
             if let Some(keys) = measurement.get_mut(kind) {
                 rename(keys, &key).under(&format!("measurements[{k}].{kind}"))?;
@@ -98,8 +98,8 @@ fn written(value: &Value, indent: usize, width: usize) -> String {
         scalar => return scalar.to_string(),
     };
     let joined = |indent: usize, width: usize, between: &str| {
-        let items = items.iter();
-        let items = items.map(|(key, item)| format!("{key}{}", written(item, indent, width)));
+        let entries = items.iter();
+        let items = entries.map(|(key, item)| format!("{key}{}", written(item, indent, width)));
         items.collect::<Vec<_>>().join(between)
     };
     let line = format!("{open}{}{close}", joined(0, usize::MAX, ", "));

@@ -18,10 +18,10 @@ use crate::trajectories::Tracks;
 /// A scenario whose names, types and ranges are valid. Relations between values are not checked yet.
 #[derive(Debug, Clone)]
 pub struct Draft {
-    /// The JSON, with its preset expanded and the files that it names inlined.
+    /// The JSON, with its preset expanded and the files that it names inlined, but for floor plans, which `keys` have.
     pub(super) document: Value,
     /// The files that it names.
-    pub(super) plans: Vec<PlanFile>,
+    pub(super) files: Vec<PlanFile>,
     pub(super) keys: File,
     /// Notes on these files, for readers of the results.
     pub(super) notes: Vec<String>,
@@ -59,13 +59,13 @@ impl Draft {
         if document.is_object() && !settings.is_empty() {
             inputs.without = Some(document.clone());
             for setting in settings {
-                let path = setting.apply(&mut document);
-                let path = path.map_err(|problem| setting.refused(problem))?;
+                let applied = setting.apply(&mut document);
+                let path = applied.map_err(|problem| setting.refused(problem))?;
                 inputs.settings.push((path, setting.clone()));
             }
         }
-        let draft = Self::of(document, Path::new(file));
-        let mut draft = draft.map_err(|problem| inputs.blame(problem))?;
+        let mut draft =
+            Self::of(document, Path::new(file)).map_err(|problem| inputs.blame(problem))?;
         inputs.check_replaced()?;
         draft.need.text = text.len() as u64;
         Ok(Self { inputs, ..draft })
@@ -99,8 +99,8 @@ impl Draft {
         let inputs = std::mem::take(&mut self.inputs);
         let ends = self.ends(inputs.without.as_ref());
         let late = self.late(ends);
-        let scenario = self.built(Path::new(&inputs.file), ends[1]);
-        let mut scenario = scenario.map_err(|problem| inputs.blame(problem))?;
+        let built = self.built(Path::new(&inputs.file), ends[1]);
+        let mut scenario = built.map_err(|problem| inputs.blame(problem))?;
         scenario.notes.extend(late);
         scenario.notes.extend(late::idle(&scenario.scene, ends));
         scenario.notes.extend(late::short(&scenario.scene, ends));
@@ -159,10 +159,8 @@ impl Inputs {
     /// The settings whose values differ from those in the file, as typed.
     fn changes(&self) -> Vec<String> {
         let differs = |(path, setting): &&(String, Setting)| {
-            let before = self
-                .without
-                .as_ref()
-                .and_then(|file| setting.value_in(file));
+            let file = self.without.as_ref();
+            let before = file.and_then(|file| setting.value_in(file));
             // Elements that were added to a list have no value in the file.
             path.ends_with(']') || before != Some(setting.value())
         };

@@ -17,10 +17,10 @@ impl Scenario {
         let given = self.document.as_object().cloned().unwrap_or_default();
         let mut all = filled(names::<File>(), given);
         let calibrated = calibrated::named(&self.profile_name);
-        let mut parameters = calibrated.map_or(Map::new(), |profile| profile.parameters.given());
-        let own = all.get("parameters").and_then(Value::as_object);
-        parameters.extend(own.cloned().unwrap_or_default());
-        let parameters = filled(names::<Parameters>(), parameters);
+        let mut own = calibrated.map_or(Map::new(), |profile| profile.parameters.given());
+        let set = all.get("parameters").and_then(Value::as_object);
+        own.extend(set.cloned().unwrap_or_default());
+        let parameters = filled(names::<Parameters>(), own);
         all.insert("parameters".to_owned(), Value::Object(parameters));
         // A profile that is defined in full stays as it is.
         if !all.get("profile").is_some_and(Value::is_object) {
@@ -45,11 +45,6 @@ fn filled(keys: &[&'static str], given: Map<String, Value>) -> Map<String, Value
     let defaults =
         missing.filter_map(|key| Some(((*key).to_owned(), property(key).get("default")?.clone())));
     let mut all: Map<String, Value> = defaults.collect();
-    all.extend(
-        given
-            .clone()
-            .into_iter()
-            .filter(|(_, value)| !value.is_null()),
-    );
+    all.extend(given.into_iter().filter(|(_, value)| !value.is_null()));
     all
 }

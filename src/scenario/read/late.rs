@@ -32,8 +32,8 @@ const MOST_NAMED: usize = 4;
 /// A note on what begins after `last`, in a run that ends at `end`, seconds. Both are the same unless the run is
 /// shorter than its scenario.
 pub fn note(document: &Value, end: f64, last: f64) -> Option<String> {
-    let late = times(document).into_iter().filter(|(_, at)| *at > last);
-    let late: Vec<(String, f64)> = late.collect();
+    let after = times(document).into_iter().filter(|(_, at)| *at > last);
+    let late: Vec<(String, f64)> = after.collect();
     let (place, at) = late.first()?;
     let others = late.iter().skip(1).map(|(place, _)| place.as_str());
     let mut named: Vec<String> = others.take(MOST_NAMED - 1).map(str::to_owned).collect();
@@ -63,16 +63,14 @@ pub fn idle(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
     let idle = initial.filter(|&(agent, id)| wait(agent, id) >= last && end > 0.0);
     let count = idle.count();
     let sources = scene.sources.iter();
-    let sources = sources.map(|one| (&one.name, one.group, Some(one.start)));
+    let begun = sources.map(|one| (&one.name, one.group, Some(one.start)));
     let entrances = scene.entrances.iter();
-    let entrances = entrances.map(|one| (&one.name, one.group, one.arrivals.first()));
+    let arrived = entrances.map(|one| (&one.name, one.group, one.arrivals.first()));
     // Those who come after the end have a note of their own.
-    let later = sources.chain(entrances).filter_map(|(name, group, first)| {
+    let later = begun.chain(arrived).filter_map(|(name, group, first)| {
         let first = first.filter(|&first| first <= last)?;
-        let premovement = scene.groups[usize::from(group)]
-            .traits
-            .premovement
-            .as_ref()?;
+        let traits = &scene.groups[usize::from(group)].traits;
+        let premovement = traits.premovement.as_ref()?;
         (premovement.share_up_to(last - first) <= 0.0).then_some(name)
     });
     let named = later.map(|name| format!("all of {}", shown(name)));
@@ -89,11 +87,12 @@ pub fn missed(scene: &Scene, [end, last]: [f64; 2]) -> Vec<String> {
     let note = |(k, entrance): (u32, &Entrance)| {
         let planned = entrance.arrivals.planned()?;
         let mut before = None;
-        let times = (0..planned).map_while(|arrival| {
-            before = entrance.arrivals.time(arrival, before, scene.seed, k);
-            before
-        });
-        let mut times = times.peekable();
+        let mut times = (0..planned)
+            .map_while(|arrival| {
+                before = entrance.arrivals.time(arrival, before, scene.seed, k);
+                before
+            })
+            .peekable();
         let mut arrived = 0;
         while times.next_if(|&time| time <= last).is_some() {
             arrived += 1;
@@ -148,8 +147,8 @@ pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
         let distance = match group.journey {
             Some(journey) => {
                 let stages = &scene.journeys.journeys[usize::from(journey)].stages;
-                let places = stages.iter().flat_map(|stage| &stage.places);
-                let places = places.map(|&place| &scene.journeys.places[usize::from(place)]);
+                let numbers = stages.iter().flat_map(|stage| &stage.places);
+                let places = numbers.map(|&place| &scene.journeys.places[usize::from(place)]);
                 let exits = places.filter(|place| place.is_exit());
                 let ways =
                     exits.map(|exit| (exit.nearest_point(agent.position) - agent.position).norm());
@@ -157,12 +156,10 @@ pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
             }
             None => (agent.goal - agent.position).norm() - group.removal_radius?,
         };
-        let drawn = group.traits.preferred_speed.as_ref();
-        let drawn = drawn.map(|speed| speed.quantile(FASTEST));
-        let speed = agent
-            .preferred_speed
-            .or(drawn)
-            .unwrap_or(scene.preferred_speed);
+        let speeds = group.traits.preferred_speed.as_ref();
+        let drawn = speeds.map(|speed| speed.quantile(FASTEST));
+        let own = agent.preferred_speed.or(drawn);
+        let speed = own.unwrap_or(scene.preferred_speed);
         Some(distance / speed)
     };
     let needed: Option<Vec<f64>> = scene.agents.iter().map(needs).collect();

@@ -6,11 +6,13 @@ use serde_json::{Value, json};
 
 use crate::error::Problem;
 use crate::error::quote::shown;
+use crate::file::File;
 use crate::floor_plan;
 use crate::floor_plan::{FloorPlan, Label};
+use crate::keys::shapes::{Outline, Ring};
 use crate::read::setting::Setting;
 use crate::scene::surroundings::{OBSTACLES, WALKABLE_AREA};
-use engine::geometry::{Area, Ring};
+use engine::geometry::Area;
 
 /// The keys that may name a file.
 pub const KEYS: [&str; 2] = [WALKABLE_AREA, OBSTACLES];
@@ -22,93 +24,112 @@ const LABELS: &str = "labels";
 /// The key that names a file, and the file: a floor plan or trajectories.
 pub type PlanFile = (&'static str, PathBuf);
 
-/// Replaces the names of floor plan files, relative to `folder`, with their contents, and adds notes on them. Returns
-/// the files, each with its key.
-pub fn fill(
-    document: &mut Value,
-    folder: &Path,
-    notes: &mut Vec<String>,
-) -> Result<Vec<PlanFile>, Problem> {
-    let mut files = Vec::new();
-    let Value::Object(document) = document else {
-        return Ok(files);
-    };
-    for (key, read) in [
-        (WALKABLE_AREA, floor_plan::read as fn(&Path) -> _),
-        (OBSTACLES, floor_plan::read_obstacles),
-    ] {
-        let name = match document.get(key) {
-            Some(Value::String(name)) => name,
-            None | Some(Value::Null | Value::Array(_)) => continue,
-            Some(Value::Object(plan)) if plan.contains_key("type") => {
-                let reason =
-                    "is GeoJSON: save it as a file that ends in .geojson, and give its name here";
+/// The geometry of the floor plans that a scenario names, in the form of keys.
+#[derive(Default)]
+pub struct Plans {
+    walkable: Option<Vec<Vec<Ring>>>,
+    obstacles: Option<Vec<Outline>>,
+}
+
+impl Plans {
+    /// Reads the files that `document` names, relative to `folder`, and takes their names out of it. Adds their labels
+    /// to the document, and notes on them. Returns also the files, each with its key.
+    pub fn take(
+        document: &mut Value,
+        folder: &Path,
+        notes: &mut Vec<String>,
+    ) -> Result<(Self, Vec<PlanFile>), Problem> {
+        let (mut plans, mut files) = (Self::default(), Vec::new());
+        for key in KEYS {
+            let Some(name) = file_name(document, key)? else {
+                continue;
+            };
+            let path = folder.join(&name);
+            let read = match key {
+                OBSTACLES => floor_plan::read_obstacles(&path),
+                _ => floor_plan::read(&path),
+            };
+            let plan = read.map_err(|error| Problem::from(error).under(key))?;
+            files.push((key, path));
+            let name = shown(&name);
+            if key == WALKABLE_AREA && plan.walkable.is_empty() {
+                let reason = format!("{name}: contains only obstacles; name it under `obstacles`");
                 return Err(Problem::new(key, reason));
             }
-            Some(_) => {
-                let reason = "must be a list of polygons, or the name of a file";
-                return Err(Problem::new(key, reason));
+            for note in &plan.notes {
+                notes.push(format!("{key}: {name}: {note}"));
             }
-        };
-        if WKT.iter().any(|word| name.trim_start().starts_with(word)) {
-            let reason =
-                "is WKT itself: save it as a file that ends in .wkt, and give its name here";
-            return Err(Problem::new(key, reason));
+            if !plan.names.is_empty() {
+                if document.get(LABELS).is_none() {
+                    document[LABELS] = json!([]);
+                }
+                // Anything else is rejected later.
+                if let Value::Array(labels) = &mut document[LABELS] {
+                    labels.extend(labels_of(&plan));
+                }
+            }
+            if key == OBSTACLES {
+                document[key] = json!([]);
+                plans.obstacles = Some(outlines(&plan.obstacles));
+            } else {
+                document[key] = Value::Null;
+                plans.walkable = Some(polygons(&plan.walkable));
+            }
         }
-        let path = folder.join(name);
-        let plan: FloorPlan = read(&path).map_err(|error| Problem::from(error).under(key))?;
-        files.push((key, path));
-        let read = plan.notes.iter();
-        notes.extend(read.map(|note| format!("{key}: {}: {note}", shown(name))));
-        let value = match key {
-            OBSTACLES => obstacles_value(&plan),
-            _ if plan.walkable.is_empty() => {
-                let reason = format!(
-                    "{}: contains only obstacles; name it under `obstacles`",
-                    shown(name)
-                );
-                return Err(Problem::new(key, reason));
-            }
-            _ => walkable_value(&plan),
-        };
-        document.insert(key.to_owned(), value);
-        if !plan.names.is_empty() {
-            let labels = document.entry(LABELS).or_insert_with(|| json!([]));
-            // Anything else is rejected later.
-            if let Value::Array(labels) = labels {
-                labels.extend(labels_of(&plan));
-            }
+        Ok((plans, files))
+    }
+
+    /// Enters the geometry into the keys of a document that lacks it.
+    pub fn enter(self, keys: &mut File) {
+        keys.walkable_area = self.walkable.or(keys.walkable_area.take());
+        if let Some(obstacles) = self.obstacles {
+            keys.obstacles = obstacles;
         }
     }
-    Ok(files)
+}
+
+/// Writes the geometry of `files`, which `keys` have, into a document that lacks it.
+pub fn write(files: &[PlanFile], keys: &File, document: &mut Value) {
+    for &(key, _) in files {
+        match key {
+            WALKABLE_AREA => document[key] = json!(keys.walkable_area),
+            OBSTACLES => document[key] = json!(keys.obstacles),
+            _ => {}
+        }
+    }
+}
+
+/// The name of the file that `document` has under a key.
+fn file_name(document: &Value, key: &str) -> Result<Option<String>, Problem> {
+    let reason = match document.get(key) {
+        None | Some(Value::Null | Value::Array(_)) => return Ok(None),
+        Some(Value::String(name)) if WKT.iter().any(|word| name.trim_start().starts_with(word)) => {
+            "is WKT itself: save it as a file that ends in .wkt, and give its name here"
+        }
+        Some(Value::String(name)) => return Ok(Some(name.clone())),
+        Some(Value::Object(plan)) if plan.contains_key("type") => {
+            "is GeoJSON: save it as a file that ends in .geojson, and give its name here"
+        }
+        Some(_) => "must be a list of polygons, or the name of a file",
+    };
+    Err(Problem::new(key, reason))
 }
 
 impl Setting {
     /// Settings that replace a scenario's walkable area, obstacles and labels with those of `plan`; messages call them
     /// `text`.
     pub fn floor_plan(plan: &FloorPlan, text: &str) -> [Self; 3] {
-        let walkable = match plan.walkable.is_empty() {
-            true => Value::Null,
-            false => walkable_value(plan),
-        };
+        let walkable = Some(&plan.walkable).filter(|areas| !areas.is_empty());
         [
-            Self::of(WALKABLE_AREA, walkable, text),
-            Self::of(OBSTACLES, obstacles_value(plan), text),
+            Self::of(
+                WALKABLE_AREA,
+                json!(walkable.map(|areas| polygons(areas))),
+                text,
+            ),
+            Self::of(OBSTACLES, json!(outlines(&plan.obstacles)), text),
             Self::of(LABELS, labels_of(plan).collect(), text),
         ]
     }
-}
-
-fn walkable_value(plan: &FloorPlan) -> Value {
-    plan.walkable.iter().map(rings_value).collect()
-}
-
-fn obstacles_value(plan: &FloorPlan) -> Value {
-    let obstacle = |area: &Area| match area.holes.is_empty() {
-        true => ring_value(&area.exterior),
-        false => rings_value(area),
-    };
-    plan.obstacles.iter().map(obstacle).collect()
 }
 
 /// The names of a plan as labels.
@@ -117,10 +138,17 @@ fn labels_of(plan: &FloorPlan) -> impl Iterator<Item = Value> {
     names.map(|Label { text, at, width }| json!({"text": text, "at": [at.x, at.y], "width": width}))
 }
 
-fn rings_value(area: &Area) -> Value {
-    area.rings().map(ring_value).collect()
+/// Areas, each as its outline, then its holes.
+fn polygons(areas: &[Area]) -> Vec<Vec<Ring>> {
+    let rings = |area: &Area| area.rings().map(Into::into).collect();
+    areas.iter().map(rings).collect()
 }
 
-fn ring_value(ring: &Ring) -> Value {
-    ring.points().iter().map(|p| json!([p.x, p.y])).collect()
+/// Areas, each as its outline, or as a list of rings if it has holes.
+fn outlines(areas: &[Area]) -> Vec<Outline> {
+    let outline = |area: &Area| match area.holes.is_empty() {
+        true => Outline::Ring((&area.exterior).into()),
+        false => Outline::Rings(area.rings().map(Into::into).collect()),
+    };
+    areas.iter().map(outline).collect()
 }

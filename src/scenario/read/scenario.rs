@@ -141,8 +141,8 @@ pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
 
 /// The system's message about a file, with advice.
 fn unreadable_because(error: &std::io::Error) -> String {
-    let said = error.to_string();
-    let said = said.split(" (os error").next().unwrap_or_default();
+    let whole = error.to_string();
+    let said = whole.split(" (os error").next().unwrap_or_default();
     match error.kind() {
         ErrorKind::NotFound => {
             format!("{said}; `sandbox list` shows the built-in scenarios")

@@ -50,9 +50,7 @@ impl Shipped {
     /// The file's `description`.
     pub fn description(&self) -> String {
         let document: Value = embedded(self.name, self.text);
-        document["description"]
-            .as_str()
-            .unwrap_or_default()
-            .to_owned()
+        let text = document["description"].as_str();
+        text.unwrap_or_default().to_owned()
     }
 }

@@ -22,8 +22,8 @@ impl Prepared<'_> {
         stops: &Stops,
         notes: &mut Vec<String>,
     ) -> Result<(), Problem> {
-        let most = self.widest.iter().map(|widest| widest.width);
-        let most = most.fold(0.0, f64::max);
+        let widths = self.widest.iter().map(|widest| widest.width);
+        let most = widths.fold(0.0, f64::max);
         let wider = match self.width < most {
             true => Some(self.floor(most)?),
             false => None,
@@ -74,8 +74,8 @@ impl Prepared<'_> {
     fn narrowest_legs(&self, floor: &Floor, stops: &Stops) -> Vec<Option<Leg>> {
         let mut maps = Maps::new(floor, self.places);
         let key = |member: Member| (member.group, self.origins.single(member));
-        let numbers = self.widest.iter().enumerate();
-        let numbers: BTreeMap<_, usize> = numbers.map(|(k, w)| (key(w.member), k)).collect();
+        let widest = self.widest.iter().enumerate();
+        let numbers: BTreeMap<_, usize> = widest.map(|(k, w)| (key(w.member), k)).collect();
         let mut narrowest: Vec<Option<Leg>> = vec![None; self.widest.len()];
         let mut journeys = BTreeMap::new();
         for start in self.starts {

@@ -12,10 +12,10 @@ pub fn changes(
     number: impl Fn(&str) -> Result<u16, Problem>,
 ) -> Result<Vec<Change>, Problem> {
     let mut changes = Vec::new();
-    let exits = keys.exits.iter().enumerate();
-    let exits = exits.map(|(k, exit)| ("exits", k, &exit.name, &exit.closed_secs));
-    let doors = keys.doors.iter().enumerate();
-    let doors = doors.map(|(k, door)| ("doors", k, &door.name, &door.closed_secs));
+    let numbered_exits = keys.exits.iter().enumerate();
+    let exits = numbered_exits.map(|(k, exit)| ("exits", k, &exit.name, &exit.closed_secs));
+    let numbered_doors = keys.doors.iter().enumerate();
+    let doors = numbered_doors.map(|(k, door)| ("doors", k, &door.name, &door.closed_secs));
     for (list, k, name, closed_secs) in exits.chain(doors) {
         let place = number(name)?;
         let closures = united(closed_secs).under(&format!("{list}[{k}]"))?;
@@ -64,12 +64,13 @@ fn change(
     places: &[Place],
     number: impl Fn(&str) -> Result<u16, Problem>,
 ) -> Result<Option<Change>, Problem> {
-    let given = [
+    let mut given = [
         ("open", &event.open, ChangeKind::Open),
         ("close", &event.close, ChangeKind::Close),
         ("release", &event.release, ChangeKind::Release),
-    ];
-    let mut given = given.into_iter().filter(|(_, name, _)| name.is_some());
+    ]
+    .into_iter()
+    .filter(|(_, name, _)| name.is_some());
     let Some((key, Some(name), kind)) = given.next() else {
         return Ok(None);
     };
@@ -116,10 +117,8 @@ fn accept(change: &Change, others: &[Change], event: &Event) -> Result<(), Probl
 pub fn idle(keys: &File, journeys: &Journeys) -> Vec<String> {
     let note = |(k, event): (usize, &Event)| {
         let name = event.open.as_ref()?;
-        let place = journeys
-            .places
-            .iter()
-            .position(|place| place.name == *name)?;
+        let mut places = journeys.places.iter();
+        let place = places.position(|place| place.name == *name)?;
         let changes = journeys.changes.iter();
         let mut before =
             changes.filter(|one| usize::from(one.place) == place && one.at < event.at_secs);

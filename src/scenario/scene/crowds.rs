@@ -12,6 +12,7 @@ use engine::agents::{NewAgent, RADIUS_RANGE};
 use engine::geometry::Area;
 use engine::math::{Vector, bounds};
 use engine::packing::{self, Body, Space};
+use engine::period::Period;
 use engine::random::{self, Purpose};
 use engine::scene::Region;
 
@@ -34,8 +35,7 @@ fn divided(areas: &[Area], places: &[Vector], name: &str) -> Option<String> {
     counts.sort_unstable_by(|a, b| b.cmp(a));
     (counts.len() > 1).then(|| {
         let parts = counts.len();
-        let counts = counts.iter().take(MOST_COUNTS).map(usize::to_string);
-        let mut counts: Vec<String> = counts.collect();
+        let mut counts: Vec<String> = counts.iter().take(MOST_COUNTS).map(usize::to_string).collect();
         counts.extend((parts > MOST_COUNTS).then(|| "…".to_owned()));
         let counts = counts.join(", ");
         format!(
@@ -66,13 +66,13 @@ impl Population<'_> {
         let traits = &self.scene.groups[usize::from(group)].traits;
         let (seed, first) = (self.scene.seed, self.scene.agents.len() as u32);
         let space = Space::new(&areas, &self.scene.walls, self.scene.period);
-        let least = traits.radius.as_ref();
-        let least = least.map_or(RADIUS_RANGE[0], |radius| radius.quantile(RARE));
+        let radius = traits.radius.as_ref();
+        let least = radius.map_or(RADIUS_RANGE[0], |radius| radius.quantile(RARE));
         // A few of too many agents are enough to find out how many fit.
         let tried = number.min(space.capacity(least));
         let radii = (first..).take(tried).map(|id| traits.radius_of(seed, id));
         let radii: Vec<f64> = radii.collect();
-        let places = match given.spacing {
+        let found = match given.spacing {
             Spacing::Random => {
                 let mut random = random::stream(seed, Purpose::Crowd, index, 0);
                 packing::scattered(&space, &self.bodies, &radii, &mut random)
@@ -83,35 +83,11 @@ impl Population<'_> {
             true => Err(tried),
             false => Ok(places),
         };
-        let places = places.and_then(all).map_err(|fitting| {
-            let (at, advice) = match given.spacing {
-                Spacing::Random => ("at random places ", ", or set `spacing` to `grid`"),
-                Spacing::Grid => ("", ""),
-            };
-            let inside = |body: &&Body| areas.iter().any(|area| area.contains(body.place));
-            let others = match self.bodies.iter().filter(inside).count() {
-                0 => String::new(),
-                others => format!(", beside {others} others that start there"),
-            };
-            let reason = format!(
-                "{number} agents do not fit: about {fitting} stand {at}side by side in the {size:.1} m² of floor of \
-                 the area{others}; use fewer, a larger area or a smaller `radius`{advice}"
-            );
-            Problem::new("", reason)
+        let places = found.and_then(all).map_err(|fitting| {
+            let crowded = self.too_many(given.spacing, &areas, fitting);
+            Problem::new("", format!("{number} agents do not fit: {crowded}"))
         })?;
-        let drawn = surroundings::area(given.area.rings()).under("area")?.area();
-        let walls = &self.scene.walls;
-        self.notes.extend(match areas.len() {
-            1 if size > MOSTLY_FREE * drawn => crossed::note(walls, &given.area, &places, place),
-            _ => divided(&areas, &places, place),
-        });
-        self.notes.extend(match size < MOSTLY_OFF * drawn {
-            true => Some(format!(
-                "{place}.area: {size:.1} m² of its {drawn:.1} m² are free floor, and all its agents start there; \
-                 check that it is where it should be"
-            )),
-            false => crossed::beyond(self.file, &given.area, place),
-        });
+        self.note_area(&given.area, &areas, &places, place)?;
         let agents = places.into_iter().zip(radii);
         self.scene
             .agents
@@ -119,6 +95,51 @@ impl Population<'_> {
                 radius: Some(radius),
                 ..NewAgent::at(place, target.goal_from(place), group)
             }));
+        Ok(())
+    }
+
+    /// How many agents fit into `areas`, and what to change.
+    fn too_many(&self, spacing: Spacing, areas: &[Area], fitting: usize) -> String {
+        let (at, advice) = match spacing {
+            Spacing::Random => ("at random places ", ", or set `spacing` to `grid`"),
+            Spacing::Grid => ("", ""),
+        };
+        let inside = |body: &&Body| areas.iter().any(|area| area.contains(body.place));
+        let others = match self.bodies.iter().filter(inside).count() {
+            0 => String::new(),
+            others => format!(", beside {others} others that start there"),
+        };
+        let size: f64 = areas.iter().map(Area::area).sum();
+        format!(
+            "about {fitting} stand {at}side by side in the {size:.1} m² of floor of the area{others}; use fewer, a \
+             larger area or a smaller `radius`{advice}"
+        )
+    }
+
+    /// Adds notes on an area that walls divide, that is hardly free, or that lies off the floor in part. `free` are its
+    /// free parts, and agents stand at `places`.
+    fn note_area(
+        &mut self,
+        drawn: &Outline,
+        free: &[Area],
+        places: &[Vector],
+        place: &str,
+    ) -> Result<(), Problem> {
+        let whole = surroundings::area(drawn.rings()).under("area")?.area();
+        let size: f64 = free.iter().map(Area::area).sum();
+        self.notes.extend(match free.len() {
+            1 if size > MOSTLY_FREE * whole => {
+                crossed::note(&self.scene.walls, drawn, places, place)
+            }
+            _ => divided(free, places, place),
+        });
+        self.notes.extend(match size < MOSTLY_OFF * whole {
+            true => Some(format!(
+                "{place}.area: {size:.1} m² of its {whole:.1} m² are free floor, and all its agents start there; \
+                 check that it is where it should be"
+            )),
+            false => crossed::beyond(self.file, drawn, place),
+        });
         Ok(())
     }
 
@@ -148,13 +169,11 @@ impl Population<'_> {
         let new = scene.agents.iter().enumerate().skip(self.bodies.len());
         self.bodies.extend(new.map(|(id, agent)| {
             let traits = &scene.groups[usize::from(agent.group)].traits;
+            let wrapped = |period: Period| period.wrapped(agent.position).0;
+            let drawn = || traits.radius_of(scene.seed, id as u32);
             Body {
-                place: scene
-                    .period
-                    .map_or(agent.position, |period| period.wrapped(agent.position).0),
-                radius: agent
-                    .radius
-                    .unwrap_or_else(|| traits.radius_of(scene.seed, id as u32)),
+                place: scene.period.map_or(agent.position, wrapped),
+                radius: agent.radius.unwrap_or_else(drawn),
             }
         }));
     }

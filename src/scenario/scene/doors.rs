@@ -178,10 +178,8 @@ pub fn up_to_walls([a, b]: [Vector; 2], walls: &Walls) -> [Vector; 2] {
 /// Notes on exits of `places` of whose lines much lies in obstacles or outside of the walkable area as it is drawn,
 /// without the floors `behind` exits and entrances.
 pub fn notes(places: &[Place], floor: &Floor, behind: &Rings) -> Vec<String> {
-    let behind = behind
-        .iter()
-        .filter_map(|ring| Ring::new(ring.clone()).ok());
-    let behind: Vec<Ring> = behind.collect();
+    let ring = |points: &Vec<Vector>| Ring::new(points.clone()).ok();
+    let behind: Vec<Ring> = behind.iter().filter_map(ring).collect();
     let note = |(k, place): (usize, &Place)| {
         let Kind::Exit(exit) = &place.kind else {
             return None;

@@ -16,7 +16,7 @@ use crate::scene::{changes, eclipsed, leaving, through_walls, units};
 use engine::entrance::Entrance;
 use engine::forces::legs::Legs;
 use engine::geometry::Walls;
-use engine::journeys::{Change, ChangeKind, Choice, Kind, Place};
+use engine::journeys::{Change, ChangeKind, Choice, Kind, Place, Zone};
 use engine::math::{Vector, bounds};
 use engine::scene::{Group, Scene};
 use engine::ways::nearest_on;
@@ -91,10 +91,7 @@ fn crowded(keys: &File, scene: &Scene, entering: u64) -> Option<String> {
         to.is_some_and(|to| to.name == TO_EXIT[0] && to.stages[0].places.len() > 1)
     });
     let looks = scene.groups.iter().any(|group| {
-        let journey = group
-            .journey
-            .map(|k| &scene.journeys.journeys[usize::from(k)]);
-        let mut stages = journey.into_iter().flat_map(|journey| &journey.stages);
+        let mut stages = leaving::stages(scene, group);
         stages.any(|stage| stage.choice == Choice::Quickest)
     });
     let has_choice = !looks && scene.ways.is_some() && (rings.count() > 1 || exits);
@@ -109,14 +106,10 @@ fn crowded(keys: &File, scene: &Scene, entering: u64) -> Option<String> {
 /// scenario describes its people, whatever their profile.
 fn unheeded(keys: &File, scene: &Scene) -> Vec<String> {
     let zones = &scene.journeys.zones;
-    let idle = zones
-        .iter()
-        .filter(|zone| zone.speed_factor == 1.0 && zone.motivation == 0.0);
-    let idle = idle.map(|zone| {
-        format!(
-            "zone `{}`: changes nothing; give it a `speed_factor` or a `motivation`",
-            shown(&zone.name)
-        )
+    let is_idle = |zone: &&Zone| zone.speed_factor == 1.0 && zone.motivation == 0.0;
+    let idle = zones.iter().filter(is_idle).map(|zone| {
+        let name = shown(&zone.name);
+        format!("zone `{name}`: changes nothing; give it a `speed_factor` or a `motivation`")
     });
     let mut notes: Vec<String> = idle.collect();
     let is_own = |group: &Group| group.motivation != keys.motivation;
@@ -174,8 +167,8 @@ fn on_legs(keys: &File, scene: &Scene) -> Option<String> {
 /// A note on a floor that is so large or empty that its unit may not be meters. Its size is that of the plan, without
 /// the floors behind exits and entrances.
 fn floor(keys: &File, walls: &Walls, entering: u64) -> Option<String> {
-    let corners = keys.walkable_area.iter().flatten().flatten();
-    let corners = corners.flat_map(|ring| ring.0.iter().map(|&corner| corner.into()));
+    let rings = keys.walkable_area.iter().flatten().flatten();
+    let corners = rings.flat_map(|ring| ring.0.iter().map(|&corner| corner.into()));
     let [low, high] = bounds(corners)?;
     let extent = high - low;
     let unbounded = walls.obstacles().iter().filter(|one| one.is_unbounded());
@@ -200,11 +193,10 @@ fn floor(keys: &File, walls: &Walls, entering: u64) -> Option<String> {
 
 /// A note on agents that start at the same point as another.
 fn coincident(scene: &Scene) -> Option<String> {
-    let positions = scene.agents.iter().map(|agent| agent.position);
-    let mut positions: Vec<Vector> = positions.collect();
+    let mut positions: Vec<Vector> = scene.agents.iter().map(|agent| agent.position).collect();
     positions.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let same = positions.windows(2).filter(|pair| pair[0] == pair[1]);
-    let same: Vec<Vector> = same.map(|pair| pair[0]).collect();
+    let pairs = positions.windows(2).filter(|pair| pair[0] == pair[1]);
+    let same: Vec<Vector> = pairs.map(|pair| pair[0]).collect();
     let first = same.first()?;
     Some(format!(
         "{} agent(s) start exactly where another one does, the first at ({}, {}): are two groups on one spot?",
@@ -216,10 +208,8 @@ fn coincident(scene: &Scene) -> Option<String> {
 
 /// Notes on the largest forces of runs that begin with crowds at random places.
 fn peaks(keys: &File) -> Vec<String> {
-    let is_random = keys
-        .crowds
-        .iter()
-        .any(|crowd| crowd.spacing == Spacing::Random);
+    let mut crowds = keys.crowds.iter();
+    let is_random = crowds.any(|crowd| crowd.spacing == Spacing::Random);
     let measured = keys.measurements.iter().enumerate().filter(|_| is_random);
     let note = |(k, given): (usize, &Measurement)| {
         let key = given.about().peaks_from_start?;
@@ -258,8 +248,8 @@ fn at_exits(scene: &Scene) -> Vec<String> {
     let note = |(k, entrance): (usize, &Entrance)| {
         let journey = scene.groups[usize::from(entrance.group)].journey?;
         let first = journeys.journeys[usize::from(journey)].stages.first()?;
-        let places = first.places.iter();
-        let mut places = places.map(|&place| &journeys.places[usize::from(place)]);
+        let numbers = first.places.iter();
+        let mut places = numbers.map(|&place| &journeys.places[usize::from(place)]);
         let middle = 0.5 * (entrance.line[0] + entrance.line[1]);
         let exit = places.find(|place| {
             let line = place.line().filter(|_| place.is_exit());
@@ -281,16 +271,17 @@ fn unused(scene: &Scene) -> Option<String> {
     let taken = used.iter().map(|&one| &journeys.journeys[usize::from(one)]);
     let stages = taken.flat_map(|journey| &journey.stages);
     let places: BTreeSet<u16> = stages.flat_map(|stage| stage.places.clone()).collect();
-    let given = journeys.journeys.iter().enumerate();
-    let given = given
-        .filter(|(k, journey)| !used.contains(&(*k as u16)) && !TO_EXIT.contains(&&*journey.name));
+    let given =
+        journeys.journeys.iter().enumerate().filter(|(k, journey)| {
+            !used.contains(&(*k as u16)) && !TO_EXIT.contains(&&*journey.name)
+        });
     let idle = given.map(|(_, journey)| format!("the journey `{}`", shown(&journey.name)));
-    let others = journeys.places.iter().enumerate();
-    let others = others.filter(|(k, place)| {
-        !places.contains(&(*k as u16)) && !matches!(place.kind, Kind::Door(_))
-    });
-    let others =
-        others.map(|(_, place)| format!("the {} `{}`", place.kind.name(), shown(&place.name)));
+    let others = journeys
+        .places
+        .iter()
+        .enumerate()
+        .filter(|(k, place)| !places.contains(&(*k as u16)) && !matches!(place.kind, Kind::Door(_)))
+        .map(|(_, place)| format!("the {} `{}`", place.kind.name(), shown(&place.name)));
     let names: Vec<String> = idle.chain(others).collect();
     if names.is_empty() {
         return None;

@@ -18,12 +18,12 @@ pub fn notes(scene: &Scene) -> Vec<String> {
         return Vec::new();
     };
     let used: BTreeSet<u16> = scene.groups.iter().filter_map(|one| one.journey).collect();
-    let notes = used.into_iter().flat_map(|journey| {
+    let of_journeys = used.into_iter().flat_map(|journey| {
         let starts = starts(scene, journey);
         let stage = scene.journeys.journeys[usize::from(journey)].stages.first();
         stage.map_or(Vec::new(), |stage| of_stage(scene, (ways, stage), &starts))
     });
-    let notes: BTreeSet<String> = notes.collect();
+    let notes: BTreeSet<String> = of_journeys.collect();
     notes.into_iter().collect()
 }
 
@@ -45,8 +45,8 @@ fn of_stage(
     starts: &[Vector],
 ) -> Vec<String> {
     let place = |number: u16| &scene.journeys.places[usize::from(number)];
-    let exits = stage.places.iter().copied();
-    let exits: Vec<u16> = exits.filter(|&number| place(number).is_exit()).collect();
+    let places = stage.places.iter().copied();
+    let exits: Vec<u16> = places.filter(|&number| place(number).is_exit()).collect();
     let crosses = |to: u16, other: u16| {
         let line = place(other).line();
         let crossed = |start: &Vector| {

@@ -17,10 +17,9 @@ impl Population<'_> {
         let name = given.name.as_deref().unwrap_or(FROM);
         let (group, target) = self.people(name, &given.all, None)?;
         let agent = |person: &Person| agent(person, &target, group);
-        let (there, mut later): (Vec<&Person>, Vec<&Person>) = given
-            .people()
-            .iter()
-            .partition(|person| person.enters() <= 0.0);
+        let people = given.people().iter();
+        let (there, mut later): (Vec<&Person>, Vec<&Person>) =
+            people.partition(|person| person.enters() <= 0.0);
         if self.scene.period.is_some() && !later.is_empty() {
             let reason = format!(
                 "in a periodic scene none come in, and {} people appear after the start; set `until_secs` to `at_secs`",

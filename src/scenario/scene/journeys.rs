@@ -40,8 +40,8 @@ pub fn journeys(
     for (k, given) in keys.journeys.iter().enumerate() {
         found.add_journey(given).under(&format!("journeys[{k}]"))?;
     }
-    let exits = keys.exits.iter().map(|exit| found.numbers[&exit.name]);
-    let exits: Vec<u16> = exits.collect();
+    let numbers = keys.exits.iter().map(|exit| found.numbers[&exit.name]);
+    let exits: Vec<u16> = numbers.collect();
     if !exits.is_empty() {
         let [nearest, quickest] = TO_EXIT;
         let (name, choice) = match keys.route_choice.unwrap_or_default() {
@@ -118,11 +118,8 @@ impl Found<'_> {
             let reason = format!("more than {MOST_NUMBERED} places");
             return Err(Problem::new(place, reason));
         }
-        if self
-            .numbers
-            .insert(name.to_owned(), number as u16)
-            .is_some()
-        {
+        let other = self.numbers.insert(name.to_owned(), number as u16);
+        if other.is_some() {
             let reason = format!("there are two places named `{}`; rename one", shown(name));
             return Err(Problem::new(format!("{place}.name"), reason));
         }
@@ -133,9 +130,9 @@ impl Found<'_> {
 
     fn number(&self, name: &str) -> Result<u16, Problem> {
         self.numbers.get(name).copied().ok_or_else(|| {
-            let known = self.numbers.keys().map(String::as_str);
-            let near = suggestion(name, known.clone());
-            let known: Vec<String> = known.map(|name| format!("`{name}`")).collect();
+            let names = self.numbers.keys().map(String::as_str);
+            let near = suggestion(name, names.clone());
+            let known: Vec<String> = names.map(|name| format!("`{name}`")).collect();
             let known = match known.as_slice() {
                 [] => "; the scenario has no exits, waypoints, waiting areas, queues or doors"
                     .to_owned(),
@@ -172,8 +169,8 @@ impl Found<'_> {
             return Err(Problem::new("name", reason));
         }
         let stages = given.stages.iter().enumerate();
-        let stages = stages.map(|(k, stage)| self.stage(stage).under(&format!("stages[{k}]")));
-        let stages: Vec<JourneyStage> = stages.collect::<Result<_, _>>()?;
+        let checked = stages.map(|(k, stage)| self.stage(stage).under(&format!("stages[{k}]")));
+        let stages: Vec<JourneyStage> = checked.collect::<Result<_, _>>()?;
         let is_exit = |&place: &u16| self.journeys.places[usize::from(place)].is_exit();
         let early = stages.split_last().and_then(|(_, before)| {
             before.iter().position(|stage| {

@@ -6,7 +6,7 @@ use crate::error::numbers::brief;
 use crate::error::quote::shown;
 use crate::file::File;
 use engine::agents::{NewAgent, RADIUS_RANGE, REFERENCE_RADIUS};
-use engine::journeys::{Kind, Place};
+use engine::journeys::{JourneyStage, Kind, Place};
 use engine::math::Vector;
 use engine::scene::{Group, Scene, Source};
 
@@ -16,8 +16,8 @@ const TOUCHING: f64 = 5.4;
 /// The notes on a complete scene.
 pub fn notes(keys: &File, scene: &Scene) -> Vec<String> {
     let trapped = trapped(keys, scene).into_iter();
-    let all = trapped.chain(at_once(scene)).chain(overfull(scene));
-    let all = all.chain(overrun(scene)).chain(in_walls(keys, scene));
+    let of_people = trapped.chain(at_once(scene)).chain(overfull(scene));
+    let all = of_people.chain(overrun(scene)).chain(in_walls(keys, scene));
     all.chain(narrow(scene)).collect()
 }
 
@@ -25,20 +25,25 @@ fn group(scene: &Scene, k: u16) -> &Group {
     &scene.groups[usize::from(k)]
 }
 
+/// The stages of the journey of a group.
+pub fn stages<'a>(scene: &'a Scene, group: &Group) -> impl Iterator<Item = &'a JourneyStage> {
+    let journeys = &scene.journeys.journeys;
+    let journey = group.journey.map(|k| &journeys[usize::from(k)]);
+    journey.into_iter().flat_map(|journey| &journey.stages)
+}
+
 /// A note on a run that is to end when the floor is empty, but that no agent can leave.
 fn trapped(keys: &File, scene: &Scene) -> Option<String> {
     let leaves = |one: &Group| {
-        let journey = one
-            .journey
-            .map(|k| &scene.journeys.journeys[usize::from(k)]);
-        let mut stages = journey.into_iter().flat_map(|journey| &journey.stages);
+        let mut stages = stages(scene, one);
         let place = |k: &u16| &scene.journeys.places[usize::from(*k)];
         one.removal_radius.is_some()
             || stages.any(|stage| stage.places.iter().any(|k| place(k).is_exit()))
     };
     let used = scene.agents.iter().map(|agent| agent.group);
-    let used = used.chain(scene.sources.iter().map(|source| source.group));
-    let mut used = used.chain(scene.entrances.iter().map(|entrance| entrance.group));
+    let mut used = used
+        .chain(scene.sources.iter().map(|source| source.group))
+        .chain(scene.entrances.iter().map(|entrance| entrance.group));
     let is_closed = scene.period.is_none() && !used.any(|k| leaves(group(scene, k)));
     (keys.stop.when_empty && is_closed).then(|| {
         "stop.when_empty: no agent can leave, so the run ends at its duration: give groups a journey to an exit, or a \
@@ -68,9 +73,7 @@ fn at_once(scene: &Scene) -> Option<String> {
 fn overfull(scene: &Scene) -> Vec<String> {
     let sent = |number: usize| {
         let waits = |agent: &&NewAgent| {
-            let journey = group(scene, agent.group).journey;
-            let journey = journey.map(|k| &scene.journeys.journeys[usize::from(k)]);
-            let mut stages = journey.into_iter().flat_map(|journey| &journey.stages);
+            let mut stages = stages(scene, group(scene, agent.group));
             stages.any(|stage| stage.places == [number as u16])
         };
         scene.agents.iter().filter(waits).count()
@@ -126,13 +129,13 @@ fn in_walls(keys: &File, scene: &Scene) -> Option<String> {
             .map(|&k| scene.walls.wall(k).nearest_point(p).point);
         nearest.map(|point| (point - p).norm()).reduce(f64::min)
     };
-    let starts = keys.agents.iter().enumerate().filter_map(|(k, agent)| {
+    let near_walls = keys.agents.iter().enumerate().filter_map(|(k, agent)| {
         let p = Vector::from(agent.position);
         let radius = agent.radius.unwrap_or(RADIUS_RANGE[0]);
         let distance = distance(p, 0.5 * radius)?;
         Some((k, distance, radius))
     });
-    let starts: Vec<(usize, f64, f64)> = starts.collect();
+    let starts: Vec<(usize, f64, f64)> = near_walls.collect();
     let (k, distance, radius) = starts.first()?;
     let more = match starts.len() - 1 {
         0 => String::new(),
@@ -162,11 +165,8 @@ fn narrow(scene: &Scene) -> Vec<String> {
         })
     };
     let places = scene.journeys.places.iter().filter_map(note);
-    let used = scene
-        .agents
-        .iter()
-        .map(|agent| agent.group)
-        .collect::<BTreeSet<u16>>();
+    let groups = scene.agents.iter().map(|agent| agent.group);
+    let used = groups.collect::<BTreeSet<u16>>();
     let goals = used.into_iter().filter_map(|k| {
         let one = group(scene, k);
         let within = one.removal_radius.filter(|&within| within < REFERENCE_RADIUS && !is_alone)?;

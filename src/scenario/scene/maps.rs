@@ -62,15 +62,16 @@ impl<'a> Maps<'a> {
         let from = floor.locate(from)?;
         let place = match to {
             Destination::Goal(goal) => {
-                let map = self.of_goals.entry([goal.x, goal.y].map(f64::to_bits));
-                let map = map.or_insert_with(|| floor.passages([goal].into_iter()));
+                let entry = self.of_goals.entry([goal.x, goal.y].map(f64::to_bits));
+                let map = entry.or_insert_with(|| floor.passages([goal].into_iter()));
                 return map.from(from);
             }
             Destination::Place(place) => usize::from(place),
         };
         let maps = self.of_places[place].get_or_insert_with(|| {
-            let maps = sides(&self.places[place]).into_iter();
-            let maps = maps.map(|points| floor.passages(points.into_iter()));
+            let maps = sides(&self.places[place])
+                .into_iter()
+                .map(|points| floor.passages(points.into_iter()));
             maps.collect()
         });
         let found = maps.iter().filter_map(|map| map.from(from));
@@ -81,19 +82,17 @@ impl<'a> Maps<'a> {
 /// Points that agents must reach to have reached a place, all of which stand for the same: behind an exit on both
 /// sides.
 fn sides(place: &Place) -> Vec<Vec<Vector>> {
-    let goals = place.goals.iter();
-    let goals = goals.flat_map(|goal| match *goal {
+    let points_of_goals = place.goals.iter().flat_map(|goal| match *goal {
         Goal::Point(p) => vec![p],
         Goal::Line(ends) => points(ends).collect(),
     });
-    let goals: Vec<Vector> = goals.collect();
+    let goals: Vec<Vector> = points_of_goals.collect();
     let Kind::Exit(Exit { line: [a, b], .. }) = place.kind else {
         return vec![goals];
     };
     let beside = perpendicular(direction(b - a)) * BESIDE;
-    [beside, -beside]
-        .map(|beside| goals.iter().map(|p| p + beside).collect())
-        .to_vec()
+    let moved = |way: Vector| goals.iter().map(|p| p + way).collect();
+    vec![moved(beside), moved(-beside)]
 }
 
 /// Points of a line at equal distances, without its ends.

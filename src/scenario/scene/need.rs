@@ -98,9 +98,10 @@ impl Need {
         let parts = [
             (output, "to write files"),
             (listed, "to list walls near agents"),
-        ];
-        let parts = parts.into_iter().filter(|&(bytes, _)| bytes > 0);
-        let parts = parts.map(|(bytes, what)| format!("{} of it {what}", in_units(bytes)));
+        ]
+        .into_iter()
+        .filter(|&(bytes, _)| bytes > 0)
+        .map(|(bytes, what)| format!("{} of it {what}", in_units(bytes)));
         let parts = match parts.collect::<Vec<_>>().join(", ") {
             none if none.is_empty() => none,
             some => format!(" ({some})"),
@@ -128,53 +129,68 @@ impl Need {
         let cells = |grid: &Grid| u64::from(grid.columns) * u64::from(grid.rows);
         let last_entry = last_entry(file, clock, duration_secs);
         let entering = |source| cells(source).saturating_mul(entries(source, last_entry));
-        let from = file.from.iter();
-        let there = from.clone().map(FromData::initial).enumerate();
-        let late = from.map(|from| from.later(last_entry)).enumerate();
-        let agents = file.agents.iter().map(|_| 1).enumerate();
-        let crowds = file.crowds.iter().map(Crowd::most).enumerate();
-        let grids = file.grids.iter().map(cells).enumerate();
-        let sources = file.sources.iter().map(entering).enumerate();
         let through = |entrance: &Entrance| entrance.most(last_entry);
-        let entrances = file.entrances.iter().map(through).enumerate();
-        let initial = there.map(|one| ("from", one));
-        let initial = initial.chain(agents.map(|one| ("agents", one)));
-        let initial = initial.chain(grids.map(|one| ("grids", one)));
-        let initial = initial.chain(crowds.map(|one| ("crowds", one)));
-        let later = sources.map(|one| ("sources", one));
-        let later = later.chain(entrances.map(|one| ("entrances", one)));
-        let later = later
-            .chain(late.map(|one| ("from", one)))
-            .map(|one| (false, one));
-        for (is_initial, (place, (k, agents))) in initial.map(|one| (true, one)).chain(later) {
-            if is_initial {
-                need.initial = need.initial.saturating_add(agents);
+        let (from, late) = (file.from.iter(), file.from.iter());
+        let lists: [(&str, bool, Box<dyn Iterator<Item = u64>>); 7] = [
+            ("from", true, Box::new(from.map(FromData::initial))),
+            ("agents", true, Box::new(file.agents.iter().map(|_| 1))),
+            ("grids", true, Box::new(file.grids.iter().map(cells))),
+            (
+                "crowds",
+                true,
+                Box::new(file.crowds.iter().map(Crowd::most)),
+            ),
+            (
+                "sources",
+                false,
+                Box::new(file.sources.iter().map(entering)),
+            ),
+            (
+                "entrances",
+                false,
+                Box::new(file.entrances.iter().map(through)),
+            ),
+            (
+                "from",
+                false,
+                Box::new(late.map(|from| from.later(last_entry))),
+            ),
+        ];
+        for (list, is_initial, counts) in lists {
+            for (k, agents) in counts.enumerate() {
+                need.entering = need.entering.saturating_add(agents);
+                if is_initial {
+                    need.initial = need.entering;
+                }
+                if need.entering > MOST_AGENTS {
+                    return Err(need.too_many(list, k, duration_secs));
+                }
             }
-            need.entering = need.entering.saturating_add(agents);
-            if need.entering <= MOST_AGENTS {
-                continue;
-            }
-            let agents = match need.entering {
-                countable @ ..1_000_000_000_000 => countable.to_string(),
-                more => format!("{:.1e}", more as f64),
-            };
-            let reason = format!(
-                "too many: with these, {agents} agents enter within {duration_secs} s, which takes {} of \
-                 memory; at most {MOST_AGENTS} are allowed: use fewer {}",
-                in_units(need.bytes()),
-                match place {
-                    "crowds" | "from" => "agents",
-                    "entrances" => "agents per second, or a lower `number`",
-                    _ => "columns, rows or entries",
-                },
-            );
-            let place = match place {
-                "from" => place.to_owned(),
-                place => format!("{place}[{k}]"),
-            };
-            return Err(Problem::new(place, reason));
         }
         Ok(need)
+    }
+
+    /// The problem that too many agents enter with element `k` of a list.
+    fn too_many(&self, list: &str, k: usize, duration_secs: f64) -> Problem {
+        let agents = match self.entering {
+            countable @ ..1_000_000_000_000 => countable.to_string(),
+            more => format!("{:.1e}", more as f64),
+        };
+        let (place, fewer) = match list {
+            "from" => (list.to_owned(), "agents"),
+            "crowds" => (format!("{list}[{k}]"), "agents"),
+            "entrances" => (
+                format!("{list}[{k}]"),
+                "agents per second, or a lower `number`",
+            ),
+            _ => (format!("{list}[{k}]"), "columns, rows or entries"),
+        };
+        let reason = format!(
+            "too many: with these, {agents} agents enter within {duration_secs} s, which takes {} of memory; at most \
+             {MOST_AGENTS} are allowed: use fewer {fewer}",
+            in_units(self.bytes()),
+        );
+        Problem::new(place, reason)
     }
 }
 

@@ -80,8 +80,7 @@ pub fn clock_for(keys: &File, scene: &Scene) -> Result<Clock, Problem> {
         let reason = "`auto` works only with the integrators `semi-implicit` and `velocity-verlet`; \
                       give a number";
         Problem::new("time_step_secs", reason)
-    })?;
-    let step = step.min(match keys.longest_step_secs {
+    })?.min(match keys.longest_step_secs {
         Some(TimeStep::Given(longest)) => longest,
         Some(TimeStep::Auto(_)) | None => longest_faithful_step(scene),
     });

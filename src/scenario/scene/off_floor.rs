@@ -38,9 +38,8 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
 /// Rejects waypoints on the floors `behind` exits and entrances, to which people would walk through the line.
 pub fn check_waypoints(scene: &Scene, behind: &Rings) -> Result<(), Problem> {
     let rings = rings(behind);
-    let waypoints = scene.journeys.places.iter();
-    let waypoints =
-        waypoints.filter(|place| matches!(place.kind, Kind::Line(_) | Kind::Disk { .. }));
+    let places = scene.journeys.places.iter();
+    let waypoints = places.filter(|place| matches!(place.kind, Kind::Line(_) | Kind::Disk { .. }));
     for (k, place) in waypoints.enumerate() {
         let points = match &place.kind {
             Kind::Disk { at, .. } => vec![*at],

@@ -50,10 +50,8 @@ pub struct Opening {
 /// rooms, unless these are next door; the floors of two lines do not touch unless their lines are that near.
 pub fn openings(walkable: &[Area], doors: &[Door]) -> Vec<Opening> {
     let is_floor = |p: Vector| walkable.iter().any(|area| area.contains(p));
-    let openings = doors
-        .iter()
-        .filter_map(|&door| Opening::of(&is_floor, door));
-    let openings: Vec<Opening> = openings.collect();
+    let opening = |&door: &Door| Opening::of(&is_floor, door);
+    let openings: Vec<Opening> = doors.iter().filter_map(opening).collect();
     let widest = |opening: &Opening| {
         let is_taken = |p: Vector, widens: f64| {
             let mut others = openings.iter().filter(|other| !other.is_at(opening.ends));
@@ -98,8 +96,8 @@ impl Opening {
             _ if step <= WIDE_AT => step - BEFORE_NEAR_ROOMS,
             _ => step - BEFORE_ROOMS,
         });
-        let before = PARTS.map(|part| room_at(part, out, wall).unwrap_or(wall));
-        let before = before.into_iter().fold(wall, f64::min) - ROOM_BEHIND / f64::from(STEPS);
+        let free = PARTS.map(|part| room_at(part, out, wall).unwrap_or(wall));
+        let before = free.into_iter().fold(wall, f64::min) - ROOM_BEHIND / f64::from(STEPS);
         Some(Self {
             ends: [a, b],
             directions: [along, out],
@@ -171,8 +169,8 @@ impl Opening {
     /// The corners, from `first` meters behind the line.
     pub fn ring(&self, first: f64) -> Vec<[f64; 2]> {
         let is_long = self.depth > WIDE_AT;
-        let steps = [Some(first), is_long.then_some(WIDE_AT), Some(self.depth)];
-        let steps = steps.into_iter().flatten();
+        let ends = [Some(first), is_long.then_some(WIDE_AT), Some(self.depth)];
+        let steps = ends.into_iter().flatten();
         let there = steps.clone().map(|step| self.place(step, 1.0));
         let back = steps.rev().map(|step| self.place(step, 0.0));
         there.chain(back).map(Into::into).collect()

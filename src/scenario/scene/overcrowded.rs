@@ -88,10 +88,8 @@ pub fn crowded(points: &[Vector]) -> Option<(usize, usize)> {
     }
     let mut cells: Vec<[i32; 2]> = points.iter().map(cell).collect();
     cells.sort_unstable();
-    let full: Vec<&[[i32; 2]]> = cells
-        .chunk_by(|a, b| a == b)
-        .filter(|same| same.len() > MOST_PER_CELL)
-        .collect();
+    let groups = cells.chunk_by(|a, b| a == b);
+    let full: Vec<&[[i32; 2]]> = groups.filter(|same| same.len() > MOST_PER_CELL).collect();
     points.iter().enumerate().find_map(|(k, p)| {
         let found = full.binary_search_by_key(&cell(p), |same| same[0]).ok()?;
         Some((k, full[found].len()))

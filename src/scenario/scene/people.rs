@@ -1,6 +1,6 @@
 //! Agents, grids, crowds, sources and entrances of a file → groups, agents, sources and entrances of a scene.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::error::{Problem, Under};
 use crate::file::File;
@@ -27,6 +27,18 @@ const MOST_CUSTOM: usize = 1_000;
 /// Relative rounding error that a speed clamped to `max_speed` may have.
 const ROUNDING: f64 = 1e-9;
 
+/// What the single agents of a group have in common. Numbers are equal if their bits are.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Shared {
+    /// The number of their profile in [`Population::profiles`].
+    profile: Option<usize>,
+    remove_within: Option<u64>,
+    motivation: Option<u64>,
+    counted: Option<bool>,
+    journey: Option<u16>,
+    direction: Option<[u64; 2]>,
+}
+
 /// Adds the agents to a scene.
 pub struct Population<'a> {
     pub file: &'a File,
@@ -34,10 +46,10 @@ pub struct Population<'a> {
     /// The outlines of the floors behind exits and entrances, where no crowd starts.
     pub behind: &'a [Vec<Vector>],
     pub scene: &'a mut Scene,
-    /// Groups of single agents, by behavior.
-    shared: BTreeMap<String, u16>,
-    /// The different profiles defined in full.
-    custom: BTreeSet<String>,
+    /// Groups of single agents, by what these have in common.
+    shared: BTreeMap<Shared, u16>,
+    /// The different profiles that agents name or define in full.
+    profiles: Vec<ProfileChoice>,
     /// For readers of the results.
     pub notes: Vec<String>,
     /// The bodies of the first agents of the scene, as far as they have been needed.
@@ -58,7 +70,7 @@ impl<'a> Population<'a> {
             behind,
             scene,
             shared: BTreeMap::new(),
-            custom: BTreeSet::new(),
+            profiles: Vec::new(),
             notes: Vec::new(),
             bodies: Vec::new(),
         }
@@ -73,43 +85,45 @@ impl<'a> Population<'a> {
             items.add(Item::From, self.scene);
         }
         for (k, agent) in self.file.agents.iter().enumerate() {
-            let item = Item::Agent(k);
-            self.agent(agent).under(&item.to_string())?;
-            items.add(item, self.scene);
+            self.add(Item::Agent(k), &mut items, |all, _| all.agent(agent))?;
         }
         for (k, grid) in self.file.grids.iter().enumerate() {
-            let item = Item::Grid(k);
-            let name = item.to_string();
-            self.grid(grid, &name).under(&name)?;
-            items.add(item, self.scene);
+            self.add(Item::Grid(k), &mut items, |all, name| all.grid(grid, name))?;
         }
         for (k, crowd) in self.file.crowds.iter().enumerate() {
-            let item = Item::Crowd(k);
-            let name = item.to_string();
-            self.crowd(crowd, k as u32, &name).under(&name)?;
-            items.add(item, self.scene);
+            let enter = |all: &mut Self, name: &str| all.crowd(crowd, k as u32, name);
+            self.add(Item::Crowd(k), &mut items, enter)?;
         }
         for (k, source) in self.file.sources.iter().enumerate() {
-            let item = Item::Source(k);
-            let name = item.to_string();
-            self.source(source, &name).under(&name)?;
-            items.add(item, self.scene);
+            let enter = |all: &mut Self, name: &str| all.source(source, name);
+            self.add(Item::Source(k), &mut items, enter)?;
         }
         for (k, entrance) in self.file.entrances.iter().enumerate() {
-            let item = Item::Entrance(k);
-            let name = item.to_string();
-            self.entrance(entrance, &name).under(&name)?;
-            items.add(item, self.scene);
+            let enter = |all: &mut Self, name: &str| all.entrance(entrance, name);
+            self.add(Item::Entrance(k), &mut items, enter)?;
         }
         self.note_bodies();
         self.notes.extend(overlaps::note(&self.bodies));
         Ok((self.notes, items))
     }
 
+    /// Adds what `enter` adds, which gets the name of the item.
+    fn add(
+        &mut self,
+        item: Item,
+        items: &mut Items,
+        enter: impl FnOnce(&mut Self, &str) -> Result<(), Problem>,
+    ) -> Result<(), Problem> {
+        let name = item.to_string();
+        enter(self, &name).under(&name)?;
+        items.add(item, self.scene);
+        Ok(())
+    }
+
     fn agent(&mut self, agent: &people::Agent) -> Result<(), Problem> {
         let [x, y] = agent.velocity.unwrap_or_default();
-        let own = agent.preferred_speed;
-        let own = own.map(|speed| self.scene.own_speeds(speed)[1]);
+        let own_most = |speed| self.scene.own_speeds(speed)[1];
+        let own = agent.preferred_speed.map(own_most);
         let (speed, most) = (x.hypot(y), own.unwrap_or(self.scene.max_speed));
         if speed > most * (1.0 + ROUNDING) {
             let reason = format!(
@@ -145,9 +159,9 @@ impl<'a> Population<'a> {
         }
         let (grid, group, target) = self.placed(given, place)?;
         let first_id = self.scene.agents.len() as u32;
-        let agents = grid.positions(self.scene.seed, first_id);
-        let agents =
-            agents.map(|position| NewAgent::at(position, target.goal_from(position), group));
+        let agents = grid
+            .positions(self.scene.seed, first_id)
+            .map(|position| NewAgent::at(position, target.goal_from(position), group));
         self.scene.agents.extend(agents);
         Ok(())
     }
@@ -214,18 +228,38 @@ impl<'a> Population<'a> {
 
     /// The group of single agents with this behavior; creates it if needed.
     fn shared_group(&mut self, given: &Behavior, target: &Target) -> Result<u16, Problem> {
-        let shared = Behavior {
-            goal: None,
-            journey: None,
-            ..given.clone()
+        // The target has goal and journey.
+        let Behavior {
+            goal: _,
+            journey: _,
+            profile,
+            remove_within,
+            motivation,
+            counted,
+        } = given;
+        let shared = Shared {
+            profile: profile.as_ref().map(|profile| self.number_of(profile)),
+            remove_within: remove_within.map(f64::to_bits),
+            motivation: motivation.map(f64::to_bits),
+            counted: *counted,
+            journey: target.journey,
+            direction: target.direction.map(|d| [d.x, d.y].map(f64::to_bits)),
         };
-        let key = format!("{shared:?} {:?} {:?}", target.journey, target.direction);
-        if let Some(&group) = self.shared.get(&key) {
+        if let Some(&group) = self.shared.get(&shared) {
             return Ok(group);
         }
         let group = self.group(("agents", Traits::default()), given, target)?;
-        self.shared.insert(key, group);
+        self.shared.insert(shared, group);
         Ok(group)
+    }
+
+    /// The number of a profile among the different ones.
+    fn number_of(&mut self, profile: &ProfileChoice) -> usize {
+        let known = self.profiles.iter().position(|one| one == profile);
+        known.unwrap_or_else(|| {
+            self.profiles.push(profile.clone());
+            self.profiles.len() - 1
+        })
     }
 
     /// Adds a group.
@@ -242,9 +276,10 @@ impl<'a> Population<'a> {
             );
             return Err(Problem::new("", reason));
         }
-        if let Some(ProfileChoice::Custom(custom)) = &given.profile {
-            self.custom.insert(format!("{custom:?}"));
-            if self.custom.len() > MOST_CUSTOM {
+        let is_custom = |profile: &&ProfileChoice| matches!(profile, ProfileChoice::Custom(_));
+        if let Some(profile) = given.profile.as_ref().filter(is_custom) {
+            self.number_of(profile);
+            if self.profiles.iter().filter(is_custom).count() > MOST_CUSTOM {
                 let reason = format!(
                     "more than {MOST_CUSTOM} different profiles defined in full; let agents share profiles"
                 );

@@ -4,7 +4,7 @@ use crate::error::Problem;
 use crate::file::File;
 use crate::floor_plan::FloorPlan;
 use engine::agents::Agents;
-use engine::geometry::Polygon;
+use engine::geometry::{Area, Polygon};
 use engine::math::{Vector, bounds};
 use engine::period::{Axis, Period};
 use engine::scene::{Region, Scene};
@@ -78,20 +78,13 @@ pub fn bodies(rings: &Rings, period: &Period) -> Result<Vec<Polygon>, Problem> {
     let points = rings.iter().flatten().map(|&p| Vector::from(p));
     let [low, high] = bounds(points).unwrap_or_default();
     let touch = period.along(high - low) >= period.length - ON_END;
-    let areas = match touch {
-        true => FloorPlan::walkable(&copies).map(|united| united.walkable),
-        false => copies
-            .iter()
-            .map(|rings| FloorPlan::obstacle(rings))
-            .collect(),
+    let obstacle = |rings: &Rings| FloorPlan::obstacle(rings);
+    let areas: Vec<Area> = match touch {
+        true => FloorPlan::walkable(&copies)?.walkable,
+        false => copies.iter().map(obstacle).collect::<Result<_, _>>()?,
     };
-    let polygons = areas
-        .map_err(Problem::from)?
-        .into_iter()
-        .map(Polygon::filling);
-    polygons
-        .map(|polygon| polygon.map_err(|error| Problem::new("", error.to_string())))
-        .collect()
+    let polygons = areas.into_iter().map(Polygon::filling);
+    Ok(polygons.collect::<Result<_, _>>()?)
 }
 
 /// Checks that the floor goes on across the end of the period: `solids` surround the walkable area and its copies.
@@ -134,9 +127,8 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
     let ranges = scene.ranges(&scene.needs(), &Agents::default());
     let agents = scene.agents.iter().zip(0..).map(|(agent, id)| {
         let traits = &scene.groups[usize::from(agent.group)].traits;
-        agent
-            .radius
-            .unwrap_or_else(|| traits.radius_of(scene.seed, id))
+        let drawn = || traits.radius_of(scene.seed, id);
+        agent.radius.unwrap_or_else(drawn)
     });
     let widest = agents.fold(0.0, f64::max);
     let range = ranges.interaction(widest);
@@ -149,8 +141,8 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
         );
         return Err(Problem::new(LENGTH, reason));
     }
-    let measured = keys.measurements.iter().enumerate();
-    let measured = measured.flat_map(|(k, measurement)| {
+    let measurements = keys.measurements.iter().enumerate();
+    let measured = measurements.flat_map(|(k, measurement)| {
         let places = measurement.places().into_iter();
         places.map(move |(key, place)| (format!("measurements[{k}].{key}"), place.bounds()))
     });
@@ -158,8 +150,8 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
         let [min, max] = bounds(zone.area.points().iter().copied()).unwrap_or_default();
         (format!("zones: `{}`: area", zone.name), Region { min, max })
     });
-    let pushed = scene.pushes.iter();
-    let pushed = pushed.map(|push| (format!("events: `{}`: region", push.name), push.region));
+    let pushes = scene.pushes.iter();
+    let pushed = pushes.map(|push| (format!("events: `{}`: region", push.name), push.region));
     for (place, Region { min, max }) in measured.chain(pushed).chain(zones) {
         let [from, to] = period.ends();
         if period.along(min) < from || period.along(max) > to {

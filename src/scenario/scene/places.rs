@@ -154,7 +154,7 @@ fn line(given: &[Point; 2]) -> Result<[Vector; 2], Problem> {
 /// A ring of corners.
 pub fn ring(GivenRing(given): &GivenRing) -> Result<Ring, Problem> {
     let points = given.iter().map(|&p| p.into()).collect();
-    Ring::new(points).map_err(|error| Problem::new("", error.to_string()))
+    Ok(Ring::new(points)?)
 }
 
 /// Zone number `k`.

@@ -101,10 +101,8 @@ fn blend_of_steps(
         });
     }
     let name = custom.name.clone().unwrap_or_else(|| {
-        let names: Vec<&str> = converted
-            .iter()
-            .map(|step| step.profile.name.as_str())
-            .collect();
+        let each = converted.iter().map(|step| step.profile.name.as_str());
+        let names: Vec<&str> = each.collect();
         names.join("->")
     });
     Blend::new(name, parameters.sph(), converted)

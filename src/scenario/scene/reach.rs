@@ -54,11 +54,11 @@ impl<'a> Journeying<'a> {
         let stands = places.map(|(place, reached)| {
             let mut stands: Vec<Stand> = Vec::new();
             for &point in &reached.stands {
-                let beside = match place.line() {
+                let axes = match place.line() {
                     Some([a, b]) => vec![perpendicular(direction(b - a))],
                     None => vec![Vector::x(), Vector::y()],
                 };
-                let beside = beside.iter().flat_map(|way| [way * BESIDE, way * -BESIDE]);
+                let beside = axes.iter().flat_map(|way| [way * BESIDE, way * -BESIDE]);
                 let mut sides: Vec<u32> =
                     beside.filter_map(|way| regions.at(point + way)).collect();
                 sides.sort_unstable();

@@ -29,13 +29,13 @@ pub fn note(walls: &Walls) -> Option<String> {
 /// few slits; `None` without one.
 pub fn apart(walls: &Walls) -> Option<String> {
     let found = slits(walls);
-    let named = found.iter().take(NAMED).map(|(middle, width)| {
-        let width = format!("{:.1}", 1e3 * width);
-        let width = width.trim_end_matches(".0");
+    let texts = found.iter().take(NAMED).map(|(middle, width)| {
+        let text = format!("{:.1}", 1e3 * width);
+        let width = text.trim_end_matches(".0");
         let [x, y] = [middle.x, middle.y].map(to_centimeters);
         format!("{width} mm apart at ({x:.2}, {y:.2})")
     });
-    let named: Vec<String> = named.collect();
+    let named: Vec<String> = texts.collect();
     let rest = match found.len().saturating_sub(NAMED) {
         0 => String::new(),
         more => format!(" and {more} more"),
@@ -57,9 +57,8 @@ fn slits(walls: &Walls) -> Vec<(Vector, f64)> {
     let mut compared = 0;
     for (k, one) in edges.iter().enumerate() {
         let right = one[0].x.max(one[1].x) + SLIT;
-        let near = edges[k + 1..]
-            .iter()
-            .take_while(|other| left(other) <= right);
+        let others = edges[k + 1..].iter();
+        let near = others.take_while(|other| left(other) <= right);
         let between = near
             .inspect(|_| compared += 1)
             .filter_map(|other| between(one, other));

@@ -52,8 +52,8 @@ pub fn notes(keys: &File, scene: &Scene, last: f64) -> Vec<String> {
 pub fn doubtful_radius(scene: &Scene) -> Option<f64> {
     let own = scene.agents.iter().filter_map(|agent| agent.radius);
     let groups = scene.groups.iter();
-    let groups = groups.filter_map(|group| Some(group.traits.radius.as_ref()?.mean()));
-    let small = own.chain(groups).filter(|&radius| is_doubtful(radius));
+    let means = groups.filter_map(|group| Some(group.traits.radius.as_ref()?.mean()));
+    let small = own.chain(means).filter(|&radius| is_doubtful(radius));
     small.reduce(f64::min)
 }
 
@@ -64,23 +64,18 @@ fn is_doubtful(radius: f64) -> bool {
 /// Notes on preferred speeds above those of running crowds, and below those of people who walk.
 fn speeds(keys: &File, scene: &Scene) -> Vec<String> {
     let is_odd = |speed: f64| speed > FAST || (speed > 0.0 && speed < SLOW);
-    let mut found = Vec::new();
-    let own = (scene.preferred_speed, "preferred_speed".to_owned());
-    found.push(own);
+    let mut found = vec![(scene.preferred_speed, "preferred_speed".to_owned())];
     for (k, agent) in keys.agents.iter().enumerate() {
         let speed = agent.preferred_speed;
         found.extend(speed.map(|speed| (speed, format!("agents[{k}].preferred_speed"))));
     }
     for group in &scene.groups {
-        let speed = group.traits.preferred_speed.as_ref();
-        let place = || format!("preferred_speed of {}", shown(&group.name));
-        let Some(speed) = speed else {
+        let Some(speed) = &group.traits.preferred_speed else {
             continue;
         };
+        let place = || format!("preferred_speed of {}", shown(&group.name));
         let tails = [RARE, 1.0 - RARE].map(|share| speed.quantile(share));
-        let tail = tails
-            .into_iter()
-            .find(|speed| is_odd(*speed) && *speed != 0.0);
+        let tail = tails.into_iter().find(|speed| is_odd(*speed));
         found.push(match tail.filter(|_| !is_odd(speed.mean())) {
             Some(tail) => (tail, format!("{}, of one agent in 20", place())),
             None => (speed.mean(), place()),
@@ -101,10 +96,8 @@ fn speeds(keys: &File, scene: &Scene) -> Vec<String> {
 /// A note if the largest speed is below the preferred one.
 fn slowed(scene: &Scene) -> Option<String> {
     let (most, wanted) = (scene.max_speed, scene.preferred_speed);
-    let are_own = scene
-        .groups
-        .iter()
-        .all(|group| group.traits.preferred_speed.is_some());
+    let mut groups = scene.groups.iter();
+    let are_own = groups.all(|group| group.traits.preferred_speed.is_some());
     (most < wanted && wanted <= FAST && !are_own).then(|| {
         format!(
             "max_speed: {} m/s is below the preferred speed of {} m/s: no agent walks faster than that",
@@ -116,10 +109,9 @@ fn slowed(scene: &Scene) -> Option<String> {
 
 /// Notes on masses in kilograms.
 fn masses(keys: &File, scene: &Scene) -> Vec<String> {
-    let own = keys.agents.iter().enumerate();
-    let own = own.filter_map(|(k, agent)| Some((agent.mass?, format!("agents[{k}].mass"))));
-    let groups = scene.groups.iter();
-    let groups = groups.filter_map(|group| {
+    let agents = keys.agents.iter().enumerate();
+    let own = agents.filter_map(|(k, agent)| Some((agent.mass?, format!("agents[{k}].mass"))));
+    let groups = scene.groups.iter().filter_map(|group| {
         let mass = group.traits.mass.as_ref()?.mean();
         Some((mass, format!("mass of {}", shown(&group.name))))
     });
@@ -136,22 +128,15 @@ fn masses(keys: &File, scene: &Scene) -> Vec<String> {
 
 /// Notes on flows through exits and entrances that are given per minute or hour.
 fn flows(keys: &File) -> Vec<String> {
-    let exits = keys.exits.iter().enumerate();
-    let exits = exits.filter_map(|(k, exit)| {
-        Some((
-            format!("exits[{k}].most_per_sec"),
-            exit.most_per_sec?,
-            exit.line,
-        ))
-    });
-    let entrances = keys.entrances.iter().enumerate();
-    let entrances = entrances.filter_map(|(k, entrance)| {
-        Some((
-            format!("entrances[{k}].per_sec"),
-            entrance.per_sec?,
-            entrance.line.0,
-        ))
-    });
+    let mut given = Vec::new();
+    for (k, exit) in keys.exits.iter().enumerate() {
+        let place = format!("exits[{k}].most_per_sec");
+        given.extend(exit.most_per_sec.map(|flow| (place, flow, exit.line)));
+    }
+    for (k, entrance) in keys.entrances.iter().enumerate() {
+        let place = format!("entrances[{k}].per_sec");
+        given.extend(entrance.per_sec.map(|flow| (place, flow, entrance.line.0)));
+    }
     let note = |(place, flow, line): (String, f64, [Point; 2])| {
         let [a, b] = line.map(Vector::from);
         let width = (b - a).norm();
@@ -163,7 +148,7 @@ fn flows(keys: &File) -> Vec<String> {
             )
         })
     };
-    exits.chain(entrances).filter_map(note).collect()
+    given.into_iter().filter_map(note).collect()
 }
 
 /// Notes on queues in which the service of one person outlasts the run, to `end`, seconds.
@@ -200,10 +185,9 @@ fn zones(scene: &Scene) -> impl Iterator<Item = String> {
 
 /// The mean radii that are not those of people, with their places.
 fn radii(keys: &File, scene: &Scene) -> Vec<(f64, String)> {
-    let own = keys.agents.iter().enumerate();
-    let own = own.filter_map(|(k, agent)| Some((agent.radius?, format!("agents[{k}].radius"))));
-    let groups = scene.groups.iter();
-    let groups = groups.filter_map(|group| {
+    let agents = keys.agents.iter().enumerate();
+    let own = agents.filter_map(|(k, agent)| Some((agent.radius?, format!("agents[{k}].radius"))));
+    let groups = scene.groups.iter().filter_map(|group| {
         let radius = group.traits.radius.as_ref()?.mean();
         Some((radius, format!("radius of {}", shown(&group.name))))
     });

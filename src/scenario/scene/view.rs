@@ -91,10 +91,8 @@ fn most_speed(scene: &Scene) -> f64 {
         None => scene.preferred_speed,
     };
     let groups = scene.groups.iter().map(of_group);
-    let own = scene
-        .agents
-        .iter()
-        .filter_map(|agent| agent.preferred_speed);
+    let agents = scene.agents.iter();
+    let own = agents.filter_map(|agent| agent.preferred_speed);
     let fastest = groups.chain(own).fold(0.0, f64::max);
     end(if fastest > 0.0 {
         fastest
@@ -107,17 +105,12 @@ fn most_speed(scene: &Scene) -> f64 {
 fn surroundings(scene: &Scene) -> Region {
     let corners = scene.walls.iter().map(|wall| wall.start);
     let late = scene.latecomers.iter().map(|late| &late.agent);
-    let agents = scene
-        .agents
-        .iter()
-        .chain(late)
-        .flat_map(|agent| [agent.position, agent.goal]);
-    let sources = scene
-        .sources
-        .iter()
-        .flat_map(|source| [source.grid.min, source.grid.max]);
-    let lines = scene.entrances.iter();
-    let lines = lines.flat_map(|entrance| [entrance.line[0], entrance.line[1], entrance.goal]);
+    let people = scene.agents.iter().chain(late);
+    let agents = people.flat_map(|agent| [agent.position, agent.goal]);
+    let grids = scene.sources.iter();
+    let sources = grids.flat_map(|source| [source.grid.min, source.grid.max]);
+    let entrances = scene.entrances.iter();
+    let lines = entrances.flat_map(|entrance| [entrance.line[0], entrance.line[1], entrance.goal]);
     let margin = Vector::new(MARGIN, MARGIN);
     let [low, high] = bounds(corners.chain(agents).chain(sources).chain(lines)).unwrap_or_default();
     let period = scene.period;

@@ -27,8 +27,8 @@ pub fn waiting_area(
     behind: &Rings,
 ) -> Result<(Kind, Option<String>), Problem> {
     let whole = ring(&given.area).under("area")?;
-    let parts = parts_on_floor(&whole, walls, behind);
-    let parts = parts.map_err(|error| Problem::new("area", error.to_string()))?;
+    let parts = parts_on_floor(&whole, walls, behind)
+        .map_err(|error| Problem::new("area", error.to_string()))?;
     let part = largest(&parts).ok_or_else(|| Problem::new("area", OFF))?;
     // Pillars in it do not change its outline.
     let share = part.exterior.area() / whole.area();
@@ -42,8 +42,8 @@ pub fn waiting_area(
         true => [whole.clone(), whole],
         false => [part.exterior.clone(), inner(&part.exterior).under("area")?],
     };
-    let lasting = given.for_secs.as_ref().map(|secs| secs.times());
-    let lasting = lasting.transpose().under("for_secs")?;
+    let times = given.for_secs.as_ref().map(|secs| secs.times());
+    let lasting = times.transpose().under("for_secs")?;
     let waiting = Waiting {
         spots: spots(&around, walls, given.facing.map(Into::into)),
         area,
@@ -56,8 +56,8 @@ pub fn waiting_area(
 /// The largest part of a ring that is as far from its sides as spots are from walls; all of it if it is narrow.
 fn inner(ring: &Ring) -> Result<Ring, Problem> {
     let sides = around(ring, FROM_WALLS);
-    let parts = free(&[vec![ring.points().to_vec()]], &sides);
-    let parts = parts.map_err(|error| Problem::new("", error.to_string()))?;
+    let parts = free(&[vec![ring.points().to_vec()]], &sides)
+        .map_err(|error| Problem::new("", error.to_string()))?;
     Ok(largest(&parts).map_or_else(|| ring.clone(), |part| part.exterior.clone()))
 }
 

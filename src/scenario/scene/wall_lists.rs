@@ -22,8 +22,8 @@ pub fn entries(scene: &Scene, agents: u64) -> u64 {
     let radii = scene.agents.iter().filter_map(|agent| agent.radius);
     let widest = radii.fold(ranges.support.max(ranges.longest_step), f64::max);
     let reaches = [Some(widest), ranges.avoidance];
-    let bounds = reaches.into_iter().flatten();
-    let bounds = bounds.map(|reach| bound(&scene.walls, reach + ranges.drift, agents));
+    let given = reaches.into_iter().flatten();
+    let bounds = given.map(|reach| bound(&scene.walls, reach + ranges.drift, agents));
     bounds.fold(0, u64::saturating_add)
 }
 

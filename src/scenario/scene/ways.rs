@@ -55,8 +55,8 @@ pub fn add(
 ) -> Result<(), Problem> {
     let distances = Distances::new(&items.origins(keys, scene));
     let places = scene.journeys.places.iter();
-    let reached = places.map(|place| distances.reached(place, &scene.walls));
-    let reached: Vec<Reached> = reached.collect();
+    let found = places.map(|place| distances.reached(place, &scene.walls));
+    let reached: Vec<Reached> = found.collect();
     for (place, reached) in scene.journeys.places.iter_mut().zip(&reached) {
         place.goals.clone_from(&reached.goals);
     }
@@ -76,28 +76,9 @@ fn ways(
 ) -> Result<Option<Arc<Ways>>, Problem> {
     let Origins { keys, scene, .. } = origins;
     let has_journeys = scene.groups.iter().any(|group| group.journey.is_some());
-    if !keys.exits.is_empty() && !scene.groups.is_empty() && !has_journeys {
-        let reason =
-            "no agent walks to an exit: all have goals; remove `goal`, or give agents a `journey`";
-        return Err(Problem::new("exits", reason));
-    }
-    if keys.navigation == WayFinding::Straight {
-        for (key, is_given) in [
-            ("route_choice", scene.by_time()),
-            ("doors", !keys.doors.is_empty()),
-        ] {
-            if is_given {
-                let reason = "needs `navigation` `paths`; remove it, or `navigation`";
-                return Err(Problem::new(key, reason));
-            }
-        }
-        let reason = "`straight` leads to goals only; journeys and exits need `paths`";
-        return match has_journeys {
-            true => Err(Problem::new("navigation", reason)),
-            false => Ok(None),
-        };
-    }
-    if scene.walls.is_empty() && !has_journeys {
+    check_navigation(keys, scene, has_journeys)?;
+    let is_straight = keys.navigation == WayFinding::Straight;
+    if is_straight || (scene.walls.is_empty() && !has_journeys) {
         return Ok(None);
     }
     let starts = starts(scene);
@@ -144,6 +125,31 @@ fn ways(
     // Where nothing can stand between a place of the floor and a goal, agents walk straight.
     let is_needed = has_journeys || !keys.doors.is_empty() || ways.bend();
     Ok(is_needed.then(|| Arc::new(ways)))
+}
+
+/// Refuses exits to which nobody walks, and with `straight` what needs `paths`.
+fn check_navigation(keys: &File, scene: &Scene, has_journeys: bool) -> Result<(), Problem> {
+    if !keys.exits.is_empty() && !scene.groups.is_empty() && !has_journeys {
+        let reason =
+            "no agent walks to an exit: all have goals; remove `goal`, or give agents a `journey`";
+        return Err(Problem::new("exits", reason));
+    }
+    if keys.navigation == WayFinding::Straight {
+        for (key, is_given) in [
+            ("route_choice", scene.by_time()),
+            ("doors", !keys.doors.is_empty()),
+        ] {
+            if is_given {
+                let reason = "needs `navigation` `paths`; remove it, or `navigation`";
+                return Err(Problem::new(key, reason));
+            }
+        }
+        let reason = "`straight` leads to goals only; journeys and exits need `paths`";
+        if has_journeys {
+            return Err(Problem::new("navigation", reason));
+        }
+    }
+    Ok(())
 }
 
 /// The floor of a scene that has no path maps, for goals that agents get later; `width`: the least of passages.
@@ -194,11 +200,8 @@ impl Prepared<'_> {
     pub fn ways(&self, width: f64) -> Result<Ways, Problem> {
         let floor = self.floor(width)?;
         doors::check(self.places, &floor)?;
-        let places: Vec<_> = self
-            .places
-            .iter()
-            .map(|place| place.goals.clone())
-            .collect();
+        let goals = self.places.iter().map(|place| place.goals.clone());
+        let places: Vec<_> = goals.collect();
         Ways::new(floor, &places, self.goals.to_vec()).map_err(|error| match error {
             WayError::NotOnFloor(point) => self.not_on_floor(point),
             error => unusable(error),
@@ -207,7 +210,7 @@ impl Prepared<'_> {
 
     /// The rooms of the floor of `ways`, with ways to the same goals.
     fn rooms(&self, ways: &Ways) -> Result<Rooms, Problem> {
-        let doors = self.places.iter().zip(0..).filter_map(|(place, number)| {
+        let lines_of_doors = self.places.iter().zip(0..).filter_map(|(place, number)| {
             let Kind::Door(door) = &place.kind else {
                 return None;
             };
@@ -217,7 +220,7 @@ impl Prepared<'_> {
                 one_way: door.one_way,
             })
         });
-        let doors: Vec<Door> = doors.collect();
+        let doors: Vec<Door> = lines_of_doors.collect();
         let goals = ways.goals().iter().map(|&goal| vec![WayGoal::Point(goal)]);
         let places = self.places.iter().map(|place| place.goals.clone());
         let goals: Vec<_> = places.chain(goals).collect();
@@ -225,14 +228,14 @@ impl Prepared<'_> {
         let mut widths = [WIDEST, f64::INFINITY].into_iter();
         loop {
             let widest = widths.next().unwrap_or(f64::INFINITY);
-            let rooms = Rooms::new(&areas, self.width, &doors, widest, &goals);
-            let rooms = rooms.map_err(|error| {
-                let of_doors = match error {
-                    WayError::Crossing(at) => doors::crossing(self.places, at),
-                    _ => None,
-                };
-                of_doors.unwrap_or_else(|| unusable(error))
-            })?;
+            let rooms =
+                Rooms::new(&areas, self.width, &doors, widest, &goals).map_err(|error| {
+                    let of_doors = match error {
+                        WayError::Crossing(at) => doors::crossing(self.places, at),
+                        _ => None,
+                    };
+                    of_doors.unwrap_or_else(|| unusable(error))
+                })?;
             let lost = doors.iter().position(|door| !rooms.has_door(door.place));
             match lost {
                 None => return Ok(rooms),
@@ -262,9 +265,9 @@ impl Prepared<'_> {
             return Problem::new(places::key(self.places, k), reason);
         }
         let is_goal = |start: &&Start| matches!(start.to, To::Goal { goal } if goal == point);
-        let of = self.starts.iter().find(is_goal).map(|start| start.member);
-        let key = of.map_or("goal".to_owned(), |of| self.origins.goal_key(of));
-        let of = of.map_or(String::new(), |of| self.origins.name(of));
+        let member = self.starts.iter().find(is_goal).map(|start| start.member);
+        let key = member.map_or("goal".to_owned(), |member| self.origins.goal_key(member));
+        let of = member.map_or(String::new(), |of| self.origins.name(of));
         let reason = format!(
             "({}, {}), the goal of {of}, {lies}, or set `navigation` to `straight`",
             point.x, point.y
@@ -338,8 +341,8 @@ fn areas(scene: &Scene, starts: &[Start]) -> Result<Vec<Area>, Problem> {
         To::Goal { goal } => [start.place, goal],
         To::Journey(_) | To::Away => [start.place; 2],
     });
-    let places = scene.journeys.places.iter().flat_map(|place| &place.goals);
-    let places = places.flat_map(|goal| match *goal {
+    let goals = scene.journeys.places.iter().flat_map(|place| &place.goals);
+    let places = goals.flat_map(|goal| match *goal {
         WayGoal::Point(p) => [p; 2],
         WayGoal::Line(ends) => ends,
     });

@@ -63,11 +63,11 @@ impl Widest {
             let own = origins.single(member).and(agent.radius);
             add(member, own.unwrap_or_else(|| of_group(agent.group)));
         }
-        let later = scene.sources.iter().map(|source| (source.group, None));
-        let later = later.chain(scene.entrances.iter().map(|one| (one.group, None)));
+        let sources = scene.sources.iter().map(|source| (source.group, None));
+        let entrances = scene.entrances.iter().map(|one| (one.group, None));
         let people = scene.latecomers.iter().map(|late| &late.agent);
-        let later = later.chain(people.map(|agent| (agent.group, agent.radius)));
-        for (group, own) in later {
+        let latecomers = people.map(|agent| (agent.group, agent.radius));
+        for (group, own) in sources.chain(entrances).chain(latecomers) {
             let member = Member { agent: None, group };
             add(member, own.unwrap_or_else(|| of_group(group)));
         }
@@ -80,8 +80,8 @@ fn part_alone(blend: &Blend) -> f64 {
     if blend.rvo().is_some() {
         return ALONE_RVO;
     }
-    let scales = blend.steps().iter();
-    let scales = scales.map(|step| step.profile.contact.wall_contact_scale);
+    let steps = blend.steps().iter();
+    let scales = steps.map(|step| step.profile.contact.wall_contact_scale);
     ALONE * scales.fold(LEAST_ALONE, f64::max)
 }
 

@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::fs::File;
 use std::path::Path;
 
-use super::Tracks;
 use super::error::ReadError;
 use super::line::Columns;
+use super::{Tracks, is_csv};
 
 /// Columns that are not values of people.
 const OTHERS: [&str; 8] = ["id", "frame", "time", "x", "y", "pos_x", "pos_y", "z"];
@@ -29,17 +29,12 @@ type Row = (i64, i64, Vec<f64>);
 /// # Errors
 /// The file cannot be read.
 pub fn columns(path: &Path, wanted: &[&str], tracks: &Tracks) -> Result<Vec<Column>, ReadError> {
-    let is_csv = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-    let names = match is_csv {
+    let is_csv = is_csv(path);
+    let mut names = match is_csv {
         true => csv_names(path)?,
         false => sqlite_names(path),
     };
-    let names = names.into_iter();
-    let names: Vec<String> = names
-        .filter(|name| !OTHERS.contains(&name.as_str()))
-        .collect();
+    names.retain(|name| !OTHERS.contains(&name.as_str()));
     let read = |name: &&String| wanted.contains(&name.as_str()) || *name == "radius";
     let needed: Vec<&str> = names.iter().filter(read).map(String::as_str).collect();
     let values = match needed.is_empty() {
@@ -64,17 +59,13 @@ pub fn columns(path: &Path, wanted: &[&str], tracks: &Tracks) -> Result<Vec<Colu
 /// The values of some columns in the order of the tracks' rows.
 fn in_order(rows: Vec<Row>, count: usize, tracks: &Tracks) -> Vec<Vec<f64>> {
     let mut values = vec![vec![f64::NAN; tracks.len()]; count];
-    let rows: HashMap<(i64, i64), Vec<f64>> = rows
-        .into_iter()
-        .map(|(id, frame, own)| ((id, frame), own))
-        .collect();
+    let keyed = rows.into_iter().map(|(id, frame, own)| ((id, frame), own));
+    let rows: HashMap<(i64, i64), Vec<f64>> = keyed.collect();
     for (k, &frame) in tracks.frames.iter().enumerate() {
         for row in tracks.rows(k) {
             let id = tracks.ids[tracks.person[row] as usize];
-            for (column, value) in values
-                .iter_mut()
-                .zip(rows.get(&(id, frame)).into_iter().flatten())
-            {
+            let own = rows.get(&(id, frame)).into_iter().flatten();
+            for (column, value) in values.iter_mut().zip(own) {
                 column[row] = *value;
             }
         }
@@ -89,8 +80,8 @@ fn in_order(rows: Vec<Row>, count: usize, tracks: &Tracks) -> Vec<Vec<f64>> {
 }
 
 fn reader(path: &Path) -> Result<csv::Reader<File>, ReadError> {
-    let file = File::open(path);
-    let file = file.map_err(|error| ReadError::file(path, format!("cannot be read: {error}")))?;
+    let opened = File::open(path);
+    let file = opened.map_err(|error| ReadError::file(path, format!("cannot be read: {error}")))?;
     let mut builder = csv::ReaderBuilder::new();
     builder
         .comment(Some(b'#'))
@@ -101,30 +92,29 @@ fn reader(path: &Path) -> Result<csv::Reader<File>, ReadError> {
 
 fn csv_names(path: &Path) -> Result<Vec<String>, ReadError> {
     let mut reader = reader(path)?;
-    let header = reader.headers();
-    let header = header.map_err(|error| ReadError::file(path, error.to_string()))?;
+    let read = reader.headers();
+    let header = read.map_err(|error| ReadError::file(path, error.to_string()))?;
     Ok(header.iter().map(str::to_owned).collect())
 }
 
 fn csv_rows(path: &Path, names: &[&str]) -> Result<Vec<Row>, ReadError> {
     let mut reader = reader(path)?;
     let failed = |error: csv::Error| ReadError::file(path, error.to_string());
-    let header = reader.headers().map_err(failed)?.clone();
-    let header: Vec<&str> = header.iter().collect();
+    let headers = reader.headers().map_err(failed)?.clone();
+    let header: Vec<&str> = headers.iter().collect();
     let found = Columns::named(&header).map_err(|problem| ReadError::file(path, problem))?;
     let Some((columns, _)) = found else {
         return Ok(Vec::new());
     };
-    let places = names.iter();
-    let places = places.filter_map(|name| header.iter().position(|own| own == name));
-    let places: Vec<usize> = places.collect();
+    let place = |name: &&str| header.iter().position(|own| own == name);
+    let places: Vec<usize> = names.iter().filter_map(place).collect();
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(failed)?;
         let cells: Vec<&str> = record.iter().collect();
         let line = record.position().map_or(0, csv::Position::line);
-        let entry = columns.entry(&cells, line);
-        let entry = entry.map_err(|problem| ReadError::line(path, line, problem))?;
+        let read_entry = columns.entry(&cells, line);
+        let entry = read_entry.map_err(|problem| ReadError::line(path, line, problem))?;
         let values = places.iter().map(|&place| {
             let value = cells.get(place).and_then(|cell| cell.parse().ok());
             value.unwrap_or(f64::NAN)

@@ -18,8 +18,8 @@ const ROWS: u64 = 1 << 16;
 const MOST_COMPRESSED: u64 = 1100;
 
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
-    let contents = contents(path, options);
-    let contents = contents.map_err(|problem| ReadError::file(path, shown_message(&problem)))?;
+    let contents = contents(path, options)
+        .map_err(|problem| ReadError::file(path, shown_message(&problem)))?;
     Tracks::new(path, contents, options)
 }
 
@@ -81,8 +81,8 @@ fn add_rows(path: &Path, trajectory: &Dataset, contents: &mut Contents) -> Resul
         ));
     }
     for first in (0..*rows).step_by(ROWS as usize) {
-        let records = trajectory.read_raw_rows(first, ROWS);
-        let records = records.map_err(|error| damaged(&error))?;
+        let read = trajectory.read_raw_rows(first, ROWS);
+        let records = read.map_err(|error| damaged(&error))?;
         for (line, record) in (first + 1..).zip(records.chunks_exact(size as usize)) {
             let entry = || {
                 Ok(Entry {
@@ -118,8 +118,8 @@ enum Kind {
 impl Field {
     /// The field called `name` in records of `size` bytes.
     fn named(members: &[CompoundMember], name: &'static str, size: u32) -> Result<Self, String> {
-        let member = members.iter().find(|member| member.name == name);
-        let member = member.ok_or_else(|| {
+        let found = members.iter().find(|member| member.name == name);
+        let member = found.ok_or_else(|| {
             let names: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();
             let names = shown(&names.join(", ")).to_string();
             format!("the records of `trajectory` have no field {name}, only {names}")

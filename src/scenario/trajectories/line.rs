@@ -109,8 +109,8 @@ fn base_and_unit(name: &str) -> (String, String) {
 /// A whole number: 17, but also 17.0, because some programs write all numbers as floats.
 fn whole(text: &str) -> Option<i64> {
     const EXACT: f64 = (1_i64 << 53) as f64;
-    let exact = text.parse::<f64>().ok();
-    let exact = exact.filter(|number| number.fract() == 0.0 && number.abs() <= EXACT);
+    let number = text.parse::<f64>().ok();
+    let exact = number.filter(|number| number.fract() == 0.0 && number.abs() <= EXACT);
     text.parse().ok().or(exact.map(|number| number as i64))
 }
 

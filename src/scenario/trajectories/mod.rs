@@ -148,14 +148,16 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
 /// # Errors
 /// Same as [`read`].
 pub fn read_text(path: &Path, text: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {
-    let is_csv = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-    if is_csv {
-        text::read_csv(path, text, options)
-    } else {
-        text::read_text(path, text, options)
+    match is_csv(path) {
+        true => text::read_csv(path, text, options),
+        false => text::read_text(path, text, options),
     }
+}
+
+/// Whether the name of a file is that of comma-separated values.
+fn is_csv(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("csv"))
 }
 
 /// Parses the frame rate of a file and checks its range.

@@ -19,11 +19,8 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let connection =
         Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY).map_err(failed)?;
     let columns = columns(&connection, "trajectory_data").map_err(failed)?;
-    let needed = ["frame", "id", "pos_x", "pos_y"];
-    if let Some(missing) = needed
-        .iter()
-        .find(|name| !columns.iter().any(|own| own == *name))
-    {
+    let mut needed = ["frame", "id", "pos_x", "pos_y"].into_iter();
+    if let Some(missing) = needed.find(|name| !columns.iter().any(|own| own == name)) {
         let problem = if columns.is_empty() {
             "it has no table trajectory_data: this is no trajectory of JuPedSim".to_owned()
         } else {
@@ -41,13 +38,12 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
         ..Contents::default()
     };
     let mass = if has_mass { "mass" } else { "1.0" };
-    let query = format!("SELECT frame, id, pos_x, pos_y, {mass} FROM trajectory_data");
-    let mut query = connection.prepare(&query).map_err(failed)?;
+    let text = format!("SELECT frame, id, pos_x, pos_y, {mass} FROM trajectory_data");
+    let mut query = connection.prepare(&text).map_err(failed)?;
     let mut rows = query.query([]).map_err(failed)?;
     let mut line = 0;
-    let most = path
-        .metadata()
-        .map_or(u64::MAX, |about| about.len() / LEAST_ROW);
+    let about = path.metadata();
+    let most = about.map_or(u64::MAX, |about| about.len() / LEAST_ROW);
     while let Some(row) = rows.next().map_err(failed)? {
         line += 1;
         if line > most {
@@ -55,8 +51,7 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
                 "trajectory_data has more rows than fit into the file: it is damaged, or a view";
             return Err(ReadError::file(path, problem));
         }
-        let entry = entry(row, line);
-        let entry = entry.map_err(|what| {
+        let entry = entry(row, line).map_err(|what| {
             ReadError::file(path, format!("row {line} of trajectory_data: {what}"))
         })?;
         contents.entries.push(entry);
@@ -74,15 +69,14 @@ pub fn names(path: &Path) -> rusqlite::Result<Vec<String>> {
 pub fn values(path: &Path, names: &[&str]) -> Result<Vec<(i64, i64, Vec<f64>)>, ReadError> {
     let read = || -> rusqlite::Result<Vec<(i64, i64, Vec<f64>)>> {
         let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
-        let quoted = names
-            .iter()
-            .map(|name| format!("\"{}\"", name.replace('"', "\"\"")));
+        let own = names.iter();
+        let quoted = own.map(|name| format!("\"{}\"", name.replace('"', "\"\"")));
         let columns: Vec<String> = quoted.collect();
-        let query = format!(
+        let text = format!(
             "SELECT id, frame, {} FROM trajectory_data",
             columns.join(", ")
         );
-        let mut query = connection.prepare(&query)?;
+        let mut query = connection.prepare(&text)?;
         let row = |row: &Row| {
             let values = (2..2 + names.len()).map(|column| {
                 Ok(match row.get_ref(column)? {

@@ -109,10 +109,8 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
         let line = error.position().map_or(begun, csv::Position::line);
         ReadError::line(path, line, error.to_string())
     };
-    let header = reader
-        .headers()
-        .map_err(|error| unreadable(error, 1))?
-        .clone();
+    let read = reader.headers();
+    let header = read.map_err(|error| unreadable(error, 1))?.clone();
     reader.get_mut().next_line();
     let names: Vec<&str> = header.iter().collect();
     let head = |problem: String| ReadError::line(path, 1, problem);

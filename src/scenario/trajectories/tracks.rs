@@ -68,6 +68,37 @@ pub struct Contents {
     pub place: &'static str,
 }
 
+impl Contents {
+    /// The file's unit, meters.
+    fn meters(&self) -> f64 {
+        self.unit.unwrap_or(Unit::Meter).meters()
+    }
+
+    /// Checks all entries, and sorts them by frame, then by id.
+    fn sort(&mut self, path: &Path) -> Result<(), ReadError> {
+        let (place, meters) = (self.place, self.meters());
+        let refused = |line: u64, problem: String| match place {
+            "line" => ReadError::line(path, line, problem),
+            _ => ReadError::file(path, format!("{place} {line}: {problem}")),
+        };
+        let entries = &mut self.entries;
+        for entry in &*entries {
+            let checked = entry.check(entry.position * meters);
+            checked.map_err(|problem| refused(entry.line, problem))?;
+        }
+        entries.par_sort_unstable_by_key(|entry| (entry.frame, entry.id, entry.line));
+        let same = |pair: &&[Entry]| (pair[0].frame, pair[0].id) == (pair[1].frame, pair[1].id);
+        if let Some(pair) = entries.windows(2).find(same) {
+            let problem = format!(
+                "person {} is in frame {} already, by {place} {}; each may be there once: remove one",
+                pair[1].id, pair[1].frame, pair[0].line
+            );
+            return Err(refused(pair[1].line, problem));
+        }
+        Ok(())
+    }
+}
+
 /// Trajectories: one row per person and frame, sorted by frame, then by id.
 #[derive(Debug, Clone)]
 pub struct Tracks {
@@ -104,7 +135,6 @@ impl Tracks {
         mut contents: Contents,
         options: &ReadOptions,
     ) -> Result<Self, ReadError> {
-        let mut notes = Vec::new();
         if contents.entries.is_empty() {
             return Err(ReadError::file(path, "it contains no persons"));
         }
@@ -112,6 +142,7 @@ impl Tracks {
             let problem = "more than 4,294,967,295 rows; split it";
             return Err(ReadError::file(path, problem));
         }
+        let mut notes = Vec::new();
         let fps = taken("fps", options.fps, contents.fps, &mut notes).ok_or_else(|| {
             let problem = "it has no frame rate (a line like `# framerate: 25`); give --fps";
             ReadError::file(path, problem)
@@ -121,27 +152,19 @@ impl Tracks {
             let note = "no unit is given in the file (x/m or x/cm) or by --unit: meters are taken";
             notes.push(note.to_owned());
         }
-        let meters = unit.unwrap_or(Unit::Meter).meters();
-        let in_meters = |v: Vector| if meters == 1.0 { v } else { v * meters };
-        let place = contents.place;
-        let refused = |line: u64, problem: String| match place {
-            "line" => ReadError::line(path, line, problem),
-            _ => ReadError::file(path, format!("{place} {line}: {problem}")),
-        };
-        let mut entries = std::mem::take(&mut contents.entries);
-        for entry in &entries {
-            let checked = entry.check(in_meters(entry.position));
-            checked.map_err(|problem| refused(entry.line, problem))?;
-        }
-        entries.par_sort_unstable_by_key(|entry| (entry.frame, entry.id, entry.line));
-        let same = |pair: &&[Entry]| (pair[0].frame, pair[0].id) == (pair[1].frame, pair[1].id);
-        if let Some(pair) = entries.windows(2).find(same) {
-            let problem = format!(
-                "person {} is in frame {} already, by {place} {}; each may be there once: remove one",
-                pair[1].id, pair[1].frame, pair[0].line
-            );
-            return Err(refused(pair[1].line, problem));
-        }
+        contents.unit = unit;
+        contents.sort(path)?;
+        let mut tracks = Self::of_sorted(contents, fps);
+        let steps = tracks.steps();
+        tracks.step = tracks.most_common_step(&steps);
+        tracks.notes = notes;
+        tracks.note_steps(steps);
+        Ok(tracks)
+    }
+
+    /// The tracks of checked and sorted content, as if each frame were recorded.
+    fn of_sorted(contents: Contents, fps: f64) -> Self {
+        let (entries, meters) = (&contents.entries, contents.meters());
         let mut ids: Vec<i64> = entries.iter().map(|entry| entry.id).collect();
         ids.par_sort_unstable();
         ids.dedup();
@@ -151,59 +174,57 @@ impl Tracks {
         for (row, &p) in person.iter().enumerate() {
             by_person[p as usize].push(row as u32);
         }
+        let (mut frames, mut starts) = (Vec::new(), Vec::new());
+        for (row, entry) in entries.iter().enumerate() {
+            if frames.last() != Some(&entry.frame) {
+                frames.push(entry.frame);
+                starts.push(row);
+            }
+        }
+        starts.push(entries.len());
+        let places = entries.iter().map(|entry| entry.position * meters);
         let masses = entries.iter().filter(|_| contents.has_mass);
-        let mut tracks = Self {
+        Self {
             fps,
             step: 1,
-            unit,
-            frames: Vec::new(),
+            unit: contents.unit,
+            frames,
             person,
-            position: entries
-                .iter()
-                .map(|entry| in_meters(entry.position))
-                .collect(),
+            position: places.collect(),
             mass: masses.map(|entry| entry.mass).collect(),
             walkable: contents.walkable,
             notes: Vec::new(),
-            starts: Vec::new(),
+            starts,
             by_person,
             ids,
-        };
-        for (row, entry) in entries.iter().enumerate() {
-            if tracks.frames.last() != Some(&entry.frame) {
-                tracks.frames.push(entry.frame);
-                tracks.starts.push(row);
-            }
         }
-        tracks.starts.push(entries.len());
-        drop(entries);
-        let steps = tracks.steps();
-        tracks.step = tracks.most_common_step(&steps);
-        if tracks.step != 1 {
-            notes.push(format!("frames are numbered in steps of {}", tracks.step));
+    }
+
+    /// Adds notes on steps between frames, on gaps, and on speeds that no person has.
+    fn note_steps(&mut self, steps: BTreeMap<i64, u64>) {
+        if self.step != 1 {
+            let note = format!("frames are numbered in steps of {}", self.step);
+            self.notes.push(note);
         }
-        let gaps = steps.into_iter().filter(|&(step, _)| step != tracks.step);
-        let (longest, gaps): (Vec<i64>, Vec<u64>) = gaps.unzip();
+        let longer = steps.into_iter().filter(|&(step, _)| step != self.step);
+        let (longest, gaps): (Vec<i64>, Vec<u64>) = longer.unzip();
         if let Some(&longest) = longest.last() {
-            notes.push(format!(
+            self.notes.push(format!(
                 "{} gap(s) in which a person is missing, the longest {:.2} s; no motion is measured across",
                 gaps.iter().sum::<u64>(),
-                tracks.time(longest)
+                self.time(longest)
             ));
         }
-        let empty = tracks.span() - tracks.frames.len() as u64;
+        let empty = self.span() - self.frames.len() as u64;
         if empty > 0 {
-            notes.push(format!(
-                "{empty} frame(s) contain no persons; they count as empty"
-            ));
+            let note = format!("{empty} frame(s) contain no persons; they count as empty");
+            self.notes.push(note);
         }
-        if unit.is_none() && tracks.median_speed() > TOO_FAST {
-            notes.push(format!(
+        if self.unit.is_none() && self.median_speed() > TOO_FAST {
+            self.notes.push(format!(
                 "half of all steps are faster than {TOO_FAST} m/s; are these centimeters? then give --unit cm"
             ));
         }
-        tracks.notes = notes;
-        Ok(tracks)
     }
 
     /// The number of rows.
@@ -256,10 +277,9 @@ impl Tracks {
 
     /// Counts the differences between consecutive frames of the same person.
     fn steps(&self) -> BTreeMap<i64, u64> {
-        let frame_of: Vec<i64> = (0..self.frames.len())
-            .flat_map(|k| self.rows(k).map(move |_| k))
-            .map(|k| self.frames[k])
-            .collect();
+        let frames = self.frames.iter().enumerate();
+        let of_rows = frames.flat_map(|(k, &frame)| self.rows(k).map(move |_| frame));
+        let frame_of: Vec<i64> = of_rows.collect();
         let mut steps = BTreeMap::new();
         for pair in self.by_person.iter().flat_map(|rows| rows.windows(2)) {
             let step = frame_of[pair[1] as usize] - frame_of[pair[0] as usize];
@@ -270,13 +290,11 @@ impl Tracks {
 
     /// The most common step, if it divides all differences between frames. Otherwise 1: a camera missed frames.
     fn most_common_step(&self, steps: &BTreeMap<i64, u64>) -> i64 {
-        let common = steps.iter().max_by_key(|&(step, count)| (count, -step));
-        let common = common.map_or(1, |(&step, _)| step);
+        let most = steps.iter().max_by_key(|&(step, count)| (count, -step));
+        let common = most.map_or(1, |(&step, _)| step);
         let first = self.frames[0];
-        let fits = self
-            .frames
-            .iter()
-            .all(|frame| (frame - first) % common == 0);
+        let mut frames = self.frames.iter();
+        let fits = frames.all(|frame| (frame - first) % common == 0);
         if fits { common } else { 1 }
     }
 

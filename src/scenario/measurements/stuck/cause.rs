@@ -63,23 +63,12 @@ fn likely(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> Stri
         return "a wall lies between it and its goal, and it walks straight".to_owned();
     }
     let pressing = walls_ahead(simulation, i, ahead);
-    let width = 2.0 * agents.radius[i];
-    let is_wedged = |a: &Vector| {
-        let wedges = |b: &Vector| ahead.perp(a) * ahead.perp(b) < 0.0 && (a - b).norm() < width;
-        pressing.iter().any(wedges)
-    };
-    if pressing.iter().any(is_wedged) {
+    if are_on_both_sides(&pressing, ahead, 2.0 * agents.radius[i]) {
         return "the passage ahead is narrower than its body".to_owned();
     }
     let followed = || blockers(simulation, i, FOLLOWED, (aim, ahead));
     match touching.or_else(|| followed().filter(|_| pressing.is_empty())) {
-        Some(Blockers::Others) if leaving > 0 && limit.is_none() => {
-            let to = named(simulation, aim).map_or(String::new(), |name| format!(" by {name}"));
-            format!(
-                "others block its way, in a crowd that moves: {leaving} left{to} in the last {STUCK_AFTER} s"
-            )
-        }
-        Some(Blockers::Others) => limit.unwrap_or_else(|| "others block its way".to_owned()),
+        Some(Blockers::Others) => limit.unwrap_or_else(|| others(simulation, aim, leaving)),
         Some(Blockers::HeadOn) => {
             "two agents exactly head-on block each other; move one by a centimeter".to_owned()
         }
@@ -92,6 +81,26 @@ fn likely(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> Stri
         }
         None => "it walks against a wall".to_owned(),
     }
+}
+
+/// That others block the way of an agent, in a crowd of which `leaving` have left in the last seconds.
+fn others(simulation: &Simulation, aim: Aim, leaving: usize) -> String {
+    if leaving == 0 {
+        return "others block its way".to_owned();
+    }
+    let to = named(simulation, aim).map_or(String::new(), |name| format!(" by {name}"));
+    format!(
+        "others block its way, in a crowd that moves: {leaving} left{to} in the last {STUCK_AFTER} s"
+    )
+}
+
+/// Whether two of these points stand less than `width` apart, on both sides of the direction `ahead`.
+fn are_on_both_sides(points: &[Vector], ahead: Vector, width: f64) -> bool {
+    let is_wedged = |a: &Vector| {
+        let wedges = |b: &Vector| ahead.perp(a) * ahead.perp(b) < 0.0 && (a - b).norm() < width;
+        points.iter().any(wedges)
+    };
+    points.iter().any(is_wedged)
 }
 
 /// How an exit holds people back that passes a limited number per second, if it does so now, or if nearly as many as it
@@ -124,9 +133,8 @@ fn walls_ahead(simulation: &Simulation, i: usize, ahead: Vector) -> Vec<Vector> 
     let (p, radius) = (frame.agents.position[i], frame.agents.radius[i]);
     let mut near = Vec::new();
     frame.walls.near(p, radius + TOUCH, &mut near);
-    let to_points = near
-        .iter()
-        .map(|&k| frame.walls.wall(k).nearest_point(p).point - p);
+    let numbers = near.iter();
+    let to_points = numbers.map(|&k| frame.walls.wall(k).nearest_point(p).point - p);
     to_points.filter(|to| to.dot(&ahead) > 0.0).collect()
 }
 

@@ -143,10 +143,8 @@ impl Headway {
     pub(super) fn way(&self) -> Option<(Aim, f64)> {
         let is_direction = matches!(self.aim, Aim::Direction(_));
         let has_started = self.count >= STARTED;
-        self.left
-            .filter(|_| has_started)
-            .filter(|_| !is_direction)
-            .map(|left| (self.aim, left))
+        let left = self.left.filter(|_| has_started && !is_direction)?;
+        Some((self.aim, left))
     }
 
     /// That of an agent at `p` that begins to walk to `aim`.
