@@ -250,7 +250,7 @@ fn each_foreign_crate_is_used_in_one_place() {
         assert_eq!(strays(krate, &[home]), Vec::<String>::new());
     }
     for (krate, homes) in [
-        ("spade", ["engine/ways", "analysis/voronoi"]),
+        ("spade", ["engine/routes", "analysis/voronoi"]),
         ("statrs", ["engine/distribution", "common/statistics"]),
         ("rusqlite", ["scenario/trajectories", "output/trajectory"]), // reads and writes
     ] {

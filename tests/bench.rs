@@ -180,7 +180,7 @@ fn computing_everything_does_not_change_the_motion() {
         // The scene has no sources, pushes, journeys and path maps.
         assert_eq!(
             skipped(&paying),
-            [Stage::Schedule, Stage::Journeys, Stage::Ways],
+            [Stage::Schedule, Stage::Journeys, Stage::Routes],
             "{name}: everything was computed"
         );
         assert!(skipped(&needed).len() > 1, "{name}");
@@ -239,7 +239,7 @@ fn a_crowd_is_as_large_and_as_dense_as_was_asked_for() {
 }
 
 #[test]
-fn streams_go_both_ways() {
+fn streams_go_both_routes() {
     let scene = Crowd::streams(100, "sf").scene().unwrap();
     let to_the_right = scene.agents.iter().filter(|a| a.goal.x > a.position.x);
     assert_eq!(to_the_right.count(), 50);

@@ -57,7 +57,7 @@ fn doors_that_never_open_get_a_note() {
 }
 
 #[test]
-fn crowds_with_several_ways_are_told_how_they_choose() {
+fn crowds_with_several_routes_are_told_how_they_choose() {
     let mut crowded = room();
     crowded["crowds"][0]["number"] = json!(120);
     assert_eq!(notes(&crowded), [""; 0], "there is one way");

@@ -54,7 +54,7 @@ fn only(run: &Run) -> StuckGroup {
 }
 
 #[test]
-fn an_agent_before_a_wall_is_stuck_unless_it_finds_ways() {
+fn an_agent_before_a_wall_is_stuck_unless_it_finds_routes() {
     let run = ended(&with(wall(), "navigation", json!("straight")));
     let group = only(&run);
     assert_eq!((group.agents, group.agent), (1, 0));

@@ -6,8 +6,8 @@
 use std::time::{Duration, Instant};
 
 use sandbox::engine::math::Vector;
+use sandbox::engine::routes::nearest_on;
 use sandbox::engine::simulation::{Fault, Simulation};
-use sandbox::engine::ways::nearest_on;
 use sandbox::scenario::Scenario;
 use sandbox::scenario::measurements::Watched;
 use serde_json::Value;

@@ -252,17 +252,17 @@ fn people_before_a_closed_exit_move_as_fast_as_their_velocities_say_and_get_no_f
             all
         };
         let mut before = places(&simulation);
-        let mut ways = vec![[0.0; 2]; before.len()];
+        let mut routes = vec![[0.0; 2]; before.len()];
         for _ in 0..100 {
             simulation.step().unwrap();
             let now = places(&simulation);
-            for (way, (from, to)) in ways.iter_mut().zip(before.iter().zip(&now)) {
+            for (way, (from, to)) in routes.iter_mut().zip(before.iter().zip(&now)) {
                 assert!(to.0.x <= 10.0, "{profile}: beyond the exit, at {:?}", to.0);
                 *way = [way[0] + (to.0 - from.0).norm(), way[1] + to.1];
             }
             before = now;
         }
-        for [walked, expected] in ways {
+        for [walked, expected] in routes {
             assert!(
                 expected < walked + 0.1,
                 "{profile}: {walked} of {expected} m"

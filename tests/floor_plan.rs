@@ -54,7 +54,7 @@ fn pillar() -> Value {
 }
 
 #[test]
-fn all_ways_of_writing_a_room_with_a_pillar_give_the_same_walls() {
+fn all_routes_of_writing_a_room_with_a_pillar_give_the_same_walls() {
     let expected = walls(parse_wkt(ROOM).unwrap());
     assert_eq!(expected.len(), 8);
     for text in [

@@ -237,10 +237,10 @@ fn utilities(
             nearest = nearest.min((expected.powi(2) + c.powi(2) + far * far * outside).sqrt());
         }
         let before_people = positive((nearest - length) / time);
-        let ways = walls
+        let routes = walls
             .iter()
             .map(|&wall| free_way(one.r, one.radius, heading, wall, far));
-        let room = before_people.min(ways.fold(f64::INFINITY, f64::min) / time);
+        let room = before_people.min(routes.fold(f64::INFINITY, f64::min) / time);
         room * angle.cos()
             - law.of("heading_persistence") * (k as f64 - 3.0 - f64::from(held)).abs() * step
     })

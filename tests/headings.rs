@@ -1,4 +1,4 @@
-//! The law of headings: agents choose a direction by the room that it offers.
+//! The choice of headings: agents choose a direction by the room that it offers.
 
 use crate::common::walking::{crowd, walking};
 use crate::common::{blend_with, evaluated, person, run, scene, vector, walker};

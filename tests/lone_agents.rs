@@ -3,8 +3,8 @@
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
+use sandbox::engine::routes::Destination;
 use sandbox::engine::simulation::Simulation;
-use sandbox::engine::ways::Destination;
 use serde_json::json;
 
 use crate::common::floors::Plan;
@@ -58,8 +58,8 @@ fn walk(seed: u64, profile: &str, scale: f64, goal_gap: f64) -> Option<Walk> {
     let scene = scenario(&document, &[]).unwrap().scene;
     let mut points = vec![start];
     let to = Destination::Goal(goal);
-    let ways = scene.ways.as_ref().filter(|ways| ways.leads_to(to));
-    points.extend(ways.map_or(vec![goal], |ways| ways.course(start, to)));
+    let routes = scene.routes.as_ref().filter(|routes| routes.leads_to(to));
+    points.extend(routes.map_or(vec![goal], |routes| routes.course(start, to)));
     let sides: Vec<_> = points.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let shortest = sides.iter().map(|side| side.norm()).sum::<f64>() - WITHIN;
     let bend = sides.windows(2).map(|pair| pair[0].angle(&pair[1])).sum();

@@ -252,8 +252,8 @@ fn a_walk_starts_after_the_time_before_it_and_not_with_a_shove() {
 /// The keys of all measurements, from the schema.
 fn all_measurements() -> Vec<String> {
     let schema = sandbox::scenario::schema();
-    let ways = schema["$defs"]["Measurement"]["oneOf"].as_array().unwrap();
-    let keys = ways
+    let routes = schema["$defs"]["Measurement"]["oneOf"].as_array().unwrap();
+    let keys = routes
         .iter()
         .map(|way| way["required"][0].as_str().unwrap().to_owned());
     keys.collect()

@@ -2,7 +2,7 @@
 
 use sandbox::engine::geometry::{Area, Ring};
 use sandbox::engine::math::direction;
-use sandbox::engine::ways::{Floor, Narrowings};
+use sandbox::engine::routes::{Floor, Narrowings};
 
 use crate::common::vector;
 

@@ -30,7 +30,7 @@ const NEED: Need = Need {
     walls: 12,
     text: 1_000,
     listed: 0,
-    ways: 0,
+    routes: 0,
 };
 
 #[test]

@@ -192,8 +192,8 @@ fn strange_sizes_and_extents_make_small_grids() {
 fn move_to(neighbors: &mut Neighbors, agents: &mut Agents, place: impl Fn(Vector) -> Vector) {
     let sorted_at = neighbors.sorted_at().to_vec();
     agents.position = sorted_at.iter().map(|&p| place(p)).collect();
-    let ways = agents.position.iter().zip(&sorted_at);
-    let farthest = ways.map(|(p, q)| (p - q).norm()).fold(0.0, f64::max);
+    let routes = agents.position.iter().zip(&sorted_at);
+    let farthest = routes.map(|(p, q)| (p - q).norm()).fold(0.0, f64::max);
     let mut strips = neighbors.take_strips();
     let some = agents.position.chunks(STRIP).zip(sorted_at.chunks(STRIP));
     for (strip, (positions, starts)) in strips.iter_mut().zip(some) {

@@ -159,8 +159,8 @@ fn every_value_has_a_definition_and_the_page_has_all_of_them() {
     // Snapshots and run times have data, no values.
     let kinds: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
     let schema = sandbox::scenario::schema();
-    let ways = schema["$defs"]["Measurement"]["oneOf"].as_array().unwrap();
-    for way in ways {
+    let routes = schema["$defs"]["Measurement"]["oneOf"].as_array().unwrap();
+    for way in routes {
         let kind = way["required"][0].as_str().unwrap();
         assert!(
             kinds.contains(&kind) || ["snapshot", "frame_time"].contains(&kind),

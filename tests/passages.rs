@@ -1,8 +1,8 @@
-//! Bodies and passages: what they fit through, which ways they take, and what files are refused for.
+//! Bodies and passages: what they fit through, which routes they take, and what files are refused for.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sandbox::engine::ways::{Destination, Floor, Ways};
+use sandbox::engine::routes::{Destination, Floor, Routes};
 use sandbox::scenario::catalog::names;
 use serde_json::{Value, json};
 
@@ -136,7 +136,7 @@ fn files_whose_bodies_fit_no_way_are_refused_with_the_passage_and_others_get_a_n
 }
 
 #[test]
-fn the_narrowest_passage_of_the_widest_way_is_where_ways_close() {
+fn the_narrowest_passage_of_the_widest_way_is_where_routes_close() {
     let mut closed = 0;
     for case in 0..60 {
         let mut rng = ChaCha8Rng::seed_from_u64(case);
@@ -156,8 +156,8 @@ fn the_narrowest_passage_of_the_widest_way_is_where_ways_close() {
         };
         let is_open = |width: f64| {
             let floor = Floor::new(&areas, width).unwrap();
-            let ways = Ways::new(floor, &[], vec![to]).unwrap();
-            ways.is_open(from, Destination::Goal(to))
+            let routes = Routes::new(floor, &[], vec![to]).unwrap();
+            routes.is_open(from, Destination::Goal(to))
         };
         let width = passage.width.min(1.0);
         assert!(is_open(width - 1e-6), "case {case}: {passage:?}");

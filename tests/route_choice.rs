@@ -1,12 +1,12 @@
-//! Ways by time: aisles and doors that are used, one-way doors, doors that close, and journeys that branch.
+//! Quickest routes: aisles and doors that are used, one-way doors, doors that close, and journeys that branch.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::math::Vector;
+use sandbox::engine::routes::{Destination, Rooms, WIDEST};
 use sandbox::engine::simulation::Simulation;
-use sandbox::engine::ways::{Destination, Rooms, WIDEST};
 use sandbox::scenario::Scenario;
 use serde_json::{Value, json};
 
@@ -145,31 +145,31 @@ fn unequal_and_distant_doors_are_used_as_well_as_with_the_best_of_18_splits() {
 }
 
 #[test]
-fn a_breakdown_shows_the_ways_that_an_agent_compares() {
+fn a_breakdown_shows_the_routes_that_an_agent_compares() {
     let mut simulation = after(&stadiums()[0], &[], 6.0);
     simulation.evaluate().unwrap();
     let mut seen = 0;
     for i in simulation.frame().agents.present() {
         let breakdown = Breakdown::of(&simulation, i).unwrap();
-        let Some(choice) = breakdown.way_choice.as_ref() else {
+        let Some(choice) = breakdown.route_choice.as_ref() else {
             continue;
         };
         seen += 1;
-        for way in &choice.ways {
+        for way in &choice.routes {
             let waiting = way
                 .flow_per_sec
                 .map_or(0.0, |flow| f64::from(way.ahead) / flow);
             let walking = way.length / 1.4;
             let through = way.through_secs.unwrap();
-            // The people ahead pass at the flow, but not before they have walked there (`ways_by_time.rs`).
+            // The people ahead pass at the flow, but not before they have walked there (`routes_by_time.rs`).
             assert!(through > walking.max(waiting) - 1e-9, "{way:?}");
             assert!(through < walking + waiting + 1e-9, "{way:?}");
             assert!(way.total_secs.unwrap() >= through, "{way:?}");
         }
-        let times = choice.ways.iter().map(|way| way.total_secs.unwrap());
+        let times = choice.routes.iter().map(|way| way.total_secs.unwrap());
         let times: Vec<f64> = times.collect();
         assert!(times.is_sorted(), "{choice:?}");
-        assert!(breakdown.to_string().contains("way by time: "));
+        assert!(breakdown.to_string().contains("quickest route: "));
     }
     assert!(seen > 300);
 }
@@ -185,14 +185,14 @@ fn without_times_a_breakdown_says_that_an_agent_takes_the_shortest_way() {
     let mut seen = 0;
     for i in agents {
         let breakdown = Breakdown::of(&simulation, i).unwrap();
-        let Some(choice) = &breakdown.way_choice else {
+        let Some(choice) = &breakdown.route_choice else {
             continue;
         };
         seen += 1;
         assert!(!choice.by_time);
         assert!(
             choice
-                .ways
+                .routes
                 .iter()
                 .all(|way| way.flow_per_sec.is_none() && way.total_secs.is_none())
         );
@@ -201,7 +201,7 @@ fn without_times_a_breakdown_says_that_an_agent_takes_the_shortest_way() {
             !said.contains("time: ") && !said.contains("ahead at"),
             "{said}"
         );
-        assert!(said.contains("ways out of the room: "), "{said}");
+        assert!(said.contains("routes out of the room: "), "{said}");
     }
     assert!(seen > 0);
 }
@@ -282,24 +282,24 @@ fn runs_have_the_same_bits_on_any_number_of_threads_and_when_they_are_resumed() 
 }
 
 #[test]
-fn rooms_lead_to_all_goals_that_ways_lead_to() {
+fn rooms_lead_to_all_goals_that_routes_lead_to() {
     let mut rng = ChaCha8Rng::seed_from_u64(11);
     for _ in 0..60 {
         let plan = Plan::random(&mut rng);
         let areas = plan.areas();
         let width = rng.random_range(0.0..1.0);
-        let Ok(floor) = sandbox::engine::ways::Floor::new(&areas, width) else {
+        let Ok(floor) = sandbox::engine::routes::Floor::new(&areas, width) else {
             continue;
         };
         let middles = || (0..floor.mesh.triangles().len() as u32).map(|t| floor.mesh.middle(t));
         let goal: Vector = middles()
             .nth(rng.random_range(0..middles().count()))
             .unwrap();
-        let goals = [vec![sandbox::engine::ways::Goal::Point(goal)]];
+        let goals = [vec![sandbox::engine::routes::Goal::Point(goal)]];
         let rooms = Rooms::new(&areas, width, &[], WIDEST, &goals).unwrap();
-        let ways = sandbox::engine::ways::Ways::new(floor.clone(), &goals, vec![]).unwrap();
+        let routes = sandbox::engine::routes::Routes::new(floor.clone(), &goals, vec![]).unwrap();
         for p in middles() {
-            let way = ways.open_way(p, Destination::Place(0));
+            let way = routes.open_way(p, Destination::Place(0));
             let by_rooms = rooms.length(p, 0);
             assert_eq!(
                 way.is_some(),

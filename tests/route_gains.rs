@@ -1,4 +1,4 @@
-//! How much faster crowds leave random floors by the quickest ways than by the shortest.
+//! How much faster crowds leave random floors by the quickest routes than by the shortest.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -93,7 +93,7 @@ fn slower(gains: &[[f64; 2]]) -> usize {
 
 /// 501 floors and their gains: `BAD_INPUT_TIMES=167 cargo test --release --test engine -- --nocapture random_floors`.
 #[test]
-fn on_random_floors_the_quickest_ways_are_not_slower() {
+fn on_random_floors_the_quickest_routes_are_not_slower() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let floors = config(3).cases as usize;
     let gains = gains("floor", floors, || random_floor(&mut rng));
@@ -117,7 +117,7 @@ fn nobody_takes_the_far_exit_while_the_near_one_is_free() {
 
 /// 500 floors: `BAD_INPUT_TIMES=125 cargo test --release --test engine -- --nocapture several_exits`.
 #[test]
-fn on_floors_of_several_exits_the_quickest_ways_are_not_slower() {
+fn on_floors_of_several_exits_the_quickest_routes_are_not_slower() {
     let floors = config(1).cases as usize;
     let all = FAMILIES.iter().flat_map(|family| {
         let mut rng = ChaCha8Rng::seed_from_u64(7);

@@ -1,4 +1,4 @@
-//! Ways and journeys can be seen: in pictures, in recordings and by inspecting an agent.
+//! Routes and journeys can be seen: in pictures, in recordings and by inspecting an agent.
 
 use std::fs;
 use std::path::PathBuf;
@@ -63,9 +63,9 @@ fn a_picture_names_all_places_and_its_default_name_is_the_scenarios() {
 }
 
 #[test]
-fn a_picture_of_ways_has_a_panel_for_each_destination() {
+fn a_picture_of_routes_has_a_panel_for_each_destination() {
     let folder = tempfile::tempdir().unwrap();
-    let (file, svg) = (room(&folder), folder.path().join("ways.svg"));
+    let (file, svg) = (room(&folder), folder.path().join("routes.svg"));
     let draw = [
         "draw",
         text(&file),
@@ -79,8 +79,8 @@ fn a_picture_of_ways_has_a_panel_for_each_destination() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let picture = fs::read_to_string(&svg).unwrap();
     for words in [
-        "Ways to exit east",
-        "Ways to (3, 2)",
+        "Routes to exit east",
+        "Routes to (3, 2)",
         "length of the", // in two lines where the panel is low
         "shortest",
         "next corner",
@@ -109,7 +109,7 @@ fn a_picture_of_a_later_moment_shows_what_agents_do() {
 }
 
 #[test]
-fn ways_that_cannot_be_drawn_are_refused_with_advice() {
+fn routes_that_cannot_be_drawn_are_refused_with_advice() {
     let folder = tempfile::tempdir().unwrap();
     let (file, out) = (room(&folder), folder.path().join("no.svg"));
     let (file, out) = (text(&file), text(&out));
@@ -141,7 +141,7 @@ fn ways_that_cannot_be_drawn_are_refused_with_advice() {
 }
 
 #[test]
-fn a_recording_has_places_ways_and_time_series() {
+fn a_recording_has_places_routes_and_time_series() {
     let folder = tempfile::tempdir().unwrap();
     let (file, rrd) = (room(&folder), folder.path().join("room.rrd"));
     let run = [
@@ -169,7 +169,11 @@ fn a_recording_has_places_ways_and_time_series() {
         let entity = format!("/world/geometry/{name}");
         assert!(entities.contains(&entity), "{entity}");
     }
-    for entity in ["/world/ways/east", "/world/ways/till", "/world/debug/ways"] {
+    for entity in [
+        "/world/routes/east",
+        "/world/routes/till",
+        "/world/debug/routes",
+    ] {
         assert!(entities.contains(entity), "{entity}: {entities:?}");
     }
     let series = |entity: &str| -> Vec<f64> {

@@ -37,7 +37,7 @@ fn with_floor(document: &Value) -> Simulation {
     let scenario = scenario(document, &[]).unwrap();
     let floor = scenario.floor().unwrap().unwrap();
     let mut simulation = start(document, &[]);
-    simulation.add_ways(floor);
+    simulation.add_routes(floor);
     simulation
 }
 
@@ -76,8 +76,8 @@ fn goals_that_no_agent_has_any_more_take_no_memory() {
         let goal = Vector::new(11.0, 4.0 + f64::from(k) * 1e-3);
         let new = all_to(&simulation, goal);
         simulation.set_goals(&new).unwrap();
-        let ways = simulation.scene().ways.as_ref();
-        ways.unwrap().goals().len()
+        let routes = simulation.scene().routes.as_ref();
+        routes.unwrap().goals().len()
     };
     let first = goals(0);
     assert!((1..3000).all(|k| goals(k) <= first + 1));

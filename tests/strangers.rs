@@ -141,7 +141,7 @@ fn every_slip_of_a_stranger_is_answered_with_what_to_do() {
 
 #[test]
 fn numbers_of_errors_have_few_digits() {
-    // Ways are checked from random places, and bodies have random radii.
+    // Routes are checked from random places, and bodies have random radii.
     let mut narrow = room();
     narrow["walkable_area"] = json!([[
         [[0, 0], [12, 0], [12, 10], [0, 10]],

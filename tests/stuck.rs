@@ -1,4 +1,4 @@
-//! Who is reported as stuck, against the headway that follows from the trajectory and an own search for ways.
+//! Who is reported as stuck, against the headway that follows from the trajectory and an own search for routes.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -16,7 +16,7 @@ use crate::common::visibility::Sights;
 const SECS: usize = 20;
 /// The way by which an agent must come nearer in this time, meters.
 const HEADWAY: f64 = 1.0;
-/// Lengths of ways differ by rounding, meters.
+/// Lengths of routes differ by rounding, meters.
 const ROUNDING: f64 = 1e-4;
 
 /// Runs a document for `secs` seconds. Returns the run and, for every second, the ids and positions of its agents.

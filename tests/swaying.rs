@@ -1,4 +1,4 @@
-//! What `oscillation` says of people on legs, against a recomputation from the trajectories, written from
+//! What `oscillation` says of people with legs, against a recomputation from the trajectories, written from
 //! docs/reference/measurements.md alone: sums over a fine grid of frequencies in place of a fast transform.
 
 use std::f64::consts::{E, TAU};

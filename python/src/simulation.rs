@@ -191,10 +191,10 @@ impl Native {
         check_process()?;
         py.detach(|| {
             let simulation = &mut self.run.simulation;
-            if simulation.scene().ways.is_none()
+            if simulation.scene().routes.is_none()
                 && let Some(floor) = self.run.scenario.floor().map_err(error)?
             {
-                simulation.add_ways(floor);
+                simulation.add_routes(floor);
             }
             let goals = goals.into_iter().map(|(id, goal)| (id, goal.into()));
             let goals: Vec<_> = goals.collect();

@@ -1,6 +1,6 @@
 //! Analysis: statistics over values, bands of mean curves, space-time diagrams and the speed of waves in them, the
 //! speed of fronts, pushes through rows of people, spectra of oscillations, the speed of sound in a
-//! crowd, the ways to a destination on a grid, lines that people cross, Voronoi
+//! crowd, the routes to a destination on a grid, lines that people cross, Voronoi
 //! cells, quantities for safety engineers (local density, exposure, level of service, crowd pressure, forces on bodies
 //! and walls), and the search for parameters: screening, CMA-ES, and the identifiability of parameters. It uses only
 //! the engine.

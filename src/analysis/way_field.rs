@@ -1,11 +1,11 @@
-//! The shortest ways to one destination, sampled on a grid of square cells.
+//! The shortest routes to one destination, sampled on a grid of square cells.
 
 use rayon::prelude::*;
 
 use super::round;
 
 use engine::math::Vector;
-use engine::ways::{Destination, Next, Way, Ways};
+use engine::routes::{Destination, Next, Routes, Way};
 
 /// Square cells in rows from the lower left.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +50,7 @@ impl Grid {
     }
 }
 
-/// The ways from the centers of cells.
+/// The routes from the centers of cells.
 #[derive(Debug, Clone)]
 pub struct WayField {
     /// The cells.
@@ -86,12 +86,12 @@ const NOTHING: u32 = u32::MAX;
 const GOAL: u32 = u32::MAX - 1;
 
 impl WayField {
-    /// The ways to a destination that has a path map.
-    pub fn new(ways: &Ways, to: Destination, grid: Grid) -> Self {
+    /// The routes to a destination that has a path map.
+    pub fn new(routes: &Routes, to: Destination, grid: Grid) -> Self {
         let from = |k: usize| {
             let p = grid.center(k);
-            let on_floor = ways.floor.locate(p).is_some();
-            let way = on_floor.then(|| ways.open_way(p, to)).flatten();
+            let on_floor = routes.floor.locate(p).is_some();
+            let way = on_floor.then(|| routes.open_way(p, to)).flatten();
             (way.map(|way| way.length), way.map_or(NOTHING, number))
         };
         let cells = (0..grid.len()).into_par_iter().with_min_len(1024);

@@ -23,7 +23,7 @@ Examples:
   sandbox run my_station.json --until 60 --threads 2 --json
   sandbox run my_station.json --geometry station.geojson
   sandbox inspect evacuation --agent 17 --at 15 --json
-  sandbox draw my_station.json --paths 'east exit' --out ways.png
+  sandbox draw my_station.json --paths 'east exit' --out routes.png
   sandbox report my_station.json --out station.pdf
   sandbox run my_station.json --save my_station.html
   sandbox sweep study.json --threads 2

@@ -16,7 +16,7 @@ use crate::journeys::Trip;
 use crate::math::Vector;
 use crate::period::Period;
 use crate::random::{self, Purpose};
-use crate::ways::{Destination, Plan, Route, Walker, Ways};
+use crate::routes::{Destination, Plan, Route, Routes, Walker};
 
 /// D_i ∈ U[0.215, 0.265] m (§5.6).
 pub const RADIUS_RANGE: [f64; 2] = [0.215, 0.265];
@@ -93,7 +93,7 @@ pub struct Agents {
     /// The speed that the walking law allows, held until the next coarse frame, m/s, infinite without a law or agents
     /// in view; `None` for agents that entered since. Empty if no profile has a law that looks ahead.
     pub allowed_speed: Vec<Option<f64>>,
-    /// The heading that the agent follows by the law of headings, held until the next coarse frame: its number, counted
+    /// The heading that the agent follows by the choice of headings, held until the next coarse frame: its number, counted
     /// from the one along the way, positive to its left. Empty if no profile has this law.
     pub heading: Vec<i8>,
     /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
@@ -108,7 +108,7 @@ pub struct Agents {
     pub lacks_routes: bool,
     /// The point that the agent walks to on its route, meters. As long as `route`.
     pub aim: Vec<Vector>,
-    /// The opening that the agent walks to, if it chooses ways by time or through doors; `None` for agents that have
+    /// The opening that the agent walks to, if it chooses quickest routes or through doors; `None` for agents that have
     /// no goal on the floor or entered since the last coarse frame. Empty in scenes without rooms.
     pub plan: Vec<Option<Plan>>,
     /// How far the agent has come on its journey; `None` for agents without a journey, and for those that entered
@@ -304,9 +304,9 @@ impl Agents {
         self.preferred_speed.is_empty() && self.walks_from.is_empty()
     }
 
-    /// Finds the ways of all agents in coarse frames, and of those that entered since in every frame. `seed` is that of
+    /// Finds the routes of all agents in coarse frames, and of those that entered since in every frame. `seed` is that of
     /// the population.
-    pub fn follow(&mut self, ways: &Ways, coarse: bool, seed: u64) {
+    pub fn follow(&mut self, routes: &Routes, coarse: bool, seed: u64) {
         if !coarse && !self.lacks_routes && self.route.len() == self.len() {
             return;
         }
@@ -315,27 +315,25 @@ impl Agents {
         self.aim.resize(self.len(), Vector::zeros());
         let (ids, positions, goals, radii) = (&self.id, &self.position, &self.goal, &self.radius);
         let (trips, plans) = (&self.trip, &self.plan);
-        let routes = self.route.par_iter_mut().zip(&mut self.aim);
-        let routes = routes.zip(positions).enumerate();
-        routes
-            .with_min_len(FEW)
-            .for_each(|(i, ((route, aim), &position))| {
-                let still_holds = |route: &Route| !coarse || route.holds(position);
-                if route.as_ref().is_some_and(still_holds) {
-                    return;
-                }
-                let trip = trips.get(i).and_then(Option::as_ref);
-                let to = destination(trip, goals[i]);
-                let plan = plans.get(i).and_then(Option::as_ref);
-                let walker = Walker {
-                    id: ids[i],
-                    position,
-                    to,
-                    radius: radii[i],
-                    detour: plan.and_then(|plan| plan.detour(ways, to)),
-                };
-                *aim = ways.aim(&walker, route, seed);
-            });
+        let own = self.route.par_iter_mut().zip(&mut self.aim);
+        let each = own.zip(positions).enumerate().with_min_len(FEW);
+        each.for_each(|(i, ((route, aim), &position))| {
+            let still_holds = |route: &Route| !coarse || route.holds(position);
+            if route.as_ref().is_some_and(still_holds) {
+                return;
+            }
+            let trip = trips.get(i).and_then(Option::as_ref);
+            let to = destination(trip, goals[i]);
+            let plan = plans.get(i).and_then(Option::as_ref);
+            let walker = Walker {
+                id: ids[i],
+                position,
+                to,
+                radius: radii[i],
+                detour: plan.and_then(|plan| plan.detour(routes, to)),
+            };
+            *aim = routes.aim(&walker, route, seed);
+        });
     }
 
     /// Where agent `i` wants to go.
@@ -396,5 +394,5 @@ fn set_last(values: &mut Vec<f64>, count: usize, value: f64, usual: f64) {
     }
 }
 
-/// Least number of agents that look for their ways per parallel task.
+/// Least number of agents that look for their routes per parallel task.
 const FEW: usize = 1024;

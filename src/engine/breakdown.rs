@@ -6,7 +6,7 @@ mod text;
 mod visit;
 
 pub use heading::{HeadingChoice, HeadingSeen};
-pub use openings::{WayChoice, WaySeen};
+pub use openings::{RouteOptions, RouteSeen};
 pub use visit::{Alternative, Doing, Visit, Why};
 
 use serde::Serialize;
@@ -53,10 +53,10 @@ pub struct Breakdown {
     pub profiles: Vec<ProfileShare>,
     /// Its way around walls; `None` if it walks straight toward its goal.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub way: Option<WayLeft>,
-    /// The ways between which it chooses; `None` if it takes the shortest one.
+    pub way: Option<RouteLeft>,
+    /// The routes between which it chooses; `None` if it takes the shortest one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub way_choice: Option<WayChoice>,
+    pub route_choice: Option<RouteOptions>,
     /// When it begins to walk, seconds; `None` if it already walks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub walks_from_secs: Option<f64>,
@@ -92,7 +92,7 @@ pub struct ProfileShare {
 
 /// The rest of an agent's way.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct WayLeft {
+pub struct RouteLeft {
     /// Its length, meters; `None` if the agent has no path map and walks straight.
     pub length: Option<f64>,
     /// The next corner, or the end, meters.
@@ -194,8 +194,8 @@ impl Breakdown {
             pressure: fields.pressure[i],
             acceleration: fields.acceleration[i].into(),
             profiles: profiles.collect(),
-            way: way_left(simulation, i),
-            way_choice: WayChoice::of(simulation, i),
+            way: route_left(simulation, i),
+            route_choice: RouteOptions::of(simulation, i),
             walks_from_secs: (agents.walks_from.get(i).copied())
                 .filter(|&from| frame.clock.time() < from),
             visit: Visit::of(simulation, i),
@@ -233,26 +233,29 @@ impl Breakdown {
 
 /// The rest of the way of agent `i`, if the scene has path maps: to its spot if it stands in a queue or waits, else to
 /// its place or goal.
-fn way_left(simulation: &Simulation, i: usize) -> Option<WayLeft> {
-    let (agents, ways) = (simulation.frame().agents, simulation.scene().ways.as_ref()?);
+fn route_left(simulation: &Simulation, i: usize) -> Option<RouteLeft> {
+    let (agents, routes) = (
+        simulation.frame().agents,
+        simulation.scene().routes.as_ref()?,
+    );
     let route = agents.route.get(i)?.as_ref()?;
     let position = agents.position[i];
     let trip = agents.trip.get(i).and_then(Option::as_ref);
     if let Some(spot) = trip.and_then(|trip| trip.hold) {
-        return Some(WayLeft {
+        return Some(RouteLeft {
             length: Some((spot - position).norm()),
             next: spot.into(),
             heading: direction(spot - position).into(),
             corners: vec![spot.into()],
         });
     }
-    let corners = ways.course_of(route);
+    let corners = routes.course_of(route);
     // The route has the length from where the agent last looked for it.
     let from = std::iter::once(&position).chain(&corners);
     let legs = from.zip(&corners).map(|(from, to)| (to - from).norm());
-    Some(WayLeft {
+    Some(RouteLeft {
         length: route.length().is_finite().then(|| legs.sum()),
-        next: ways.next(route).into(),
+        next: routes.next(route).into(),
         heading: direction(agents.aim[i] - position).into(),
         corners: corners.into_iter().map(Into::into).collect(),
     })

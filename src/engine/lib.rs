@@ -17,7 +17,7 @@ pub mod distribution;
 
 pub mod geometry;
 
-pub mod ways;
+pub mod routes;
 
 pub mod journeys;
 

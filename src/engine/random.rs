@@ -19,7 +19,7 @@ pub enum Purpose {
     Choice = 4,
     /// The times that agents wait or are served.
     Waiting = 5,
-    /// Times at which agents compare their ways.
+    /// Times at which agents compare their routes.
     Plan = 6,
     /// Preferred speed of an agent.
     Speed = 10,

@@ -21,13 +21,13 @@ use crate::pairs::Precision;
 use crate::period::Period;
 use crate::placement::Grid;
 use crate::profile::{Blend, Override, Profile};
+use crate::routes::{Rooms, Routes};
 use crate::traits::Traits;
-use crate::ways::{Rooms, Ways};
 
 pub use needs::Needs;
 pub use region::Region;
 
-/// How agents choose between ways.
+/// How agents choose between routes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Routing {
     /// By what they choose.
@@ -36,7 +36,7 @@ pub struct Routing {
     pub knowledge: Knowledge,
 }
 
-/// By what agents choose between ways.
+/// By what agents choose between routes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RouteChoice {
@@ -73,7 +73,7 @@ pub struct Group {
     pub journey: Option<u16>,
     /// The direction in which its agents walk, of length 1, instead of to their goals.
     pub direction: Option<Vector>,
-    /// How much its agents hurry, from 0 (calm) to 1 (told to hurry): read by the law of headings.
+    /// How much its agents hurry, from 0 (calm) to 1 (told to hurry): read by the choice of headings.
     pub motivation: f64,
     /// The properties that are drawn for each of its agents.
     pub traits: Traits,
@@ -186,9 +186,9 @@ pub struct Scene {
     pub pushes: Vec<Push>,
     /// Places, journeys and zones.
     pub journeys: Journeys,
-    /// Ways around walls; `None`: agents walk straight toward their goals, as in the paper.
-    pub ways: Option<Arc<Ways>>,
-    /// How agents choose between ways.
+    /// Routes around walls; `None`: agents walk straight toward their goals, as in the paper.
+    pub routes: Option<Arc<Routes>>,
+    /// How agents choose between routes.
     pub routing: Routing,
     /// Forces from outside this crate.
     pub own_forces: Vec<Arc<dyn Force>>,
@@ -218,7 +218,7 @@ impl Default for Scene {
             latecomers: Vec::new(),
             pushes: Vec::new(),
             journeys: Journeys::default(),
-            ways: None,
+            routes: None,
             routing: Routing::default(),
             own_forces: Vec::new(),
         }
@@ -234,12 +234,12 @@ impl Scene {
         }
     }
 
-    /// The rooms of the floor, if agents choose ways by time or some doors restrict them.
+    /// The rooms of the floor, if agents choose the quickest routes or some doors restrict them.
     pub fn rooms(&self) -> Option<&Rooms> {
-        self.ways.as_ref()?.rooms()
+        self.routes.as_ref()?.rooms()
     }
 
-    /// Whether agents choose ways by time.
+    /// Whether agents choose the quickest routes.
     pub fn by_time(&self) -> bool {
         self.routing.choice == RouteChoice::Quickest
     }

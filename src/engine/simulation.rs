@@ -34,13 +34,13 @@ pub use expected::Expected;
 pub use goals::{Absent, GoalError};
 pub use limited::{Limited, SPOT_RADIUS};
 pub use passing::{BEFORE_WALLS, WALKS_ON};
-pub use plans::WayDecision;
+pub use plans::RouteDecision;
 pub use progress::{PlaceState, Progress};
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};
 pub use stream::Stream;
-pub use times::WayProspect;
+pub use times::RouteProspect;
 
 use std::sync::LazyLock;
 
@@ -56,8 +56,8 @@ use crate::math::Vector;
 use crate::neighbors::Neighbors;
 use crate::pairs::{Packed, Precision};
 use crate::profile::{Blend, Override};
+use crate::routes::Narrowings;
 use crate::scene::{Needs, Scene};
-use crate::ways::Narrowings;
 
 /// A crowd in a scene, simulated frame by frame.
 ///
@@ -276,7 +276,7 @@ impl Simulation {
         self.update_neighbors(); // 1
         self.pack();
         self.update_density_and_pressure(self.crowd.clock.time_step()); // 1B
-        self.follow_ways(self.crowd.decides()); // coarse
+        self.follow_routes(self.crowd.decides()); // coarse
         self.update_preferred_velocity(); // 2
         self.update_walking_laws(); // 3, coarse
         self.update_rvo(); // 3, coarse

@@ -21,7 +21,7 @@ fn valid(root: &Value, schema: &Value, value: &Value) -> bool {
 }
 
 fn holds(root: &Value, schema: &Value, keyword: &str, rule: &Value, value: &Value) -> bool {
-    let ways = || {
+    let routes = || {
         rule.as_array()
             .unwrap()
             .iter()
@@ -44,8 +44,8 @@ fn holds(root: &Value, schema: &Value, keyword: &str, rule: &Value, value: &Valu
         "enum" => rule.as_array().unwrap().contains(value),
         "const" => rule == value,
         "not" => !valid(root, rule, value),
-        "anyOf" => ways() > 0,
-        "oneOf" => ways() == 1,
+        "anyOf" => routes() > 0,
+        "oneOf" => routes() == 1,
         "minimum" => number.is_none_or(|x| x >= bound()),
         "exclusiveMinimum" => number.is_none_or(|x| x > bound()),
         "maximum" => number.is_none_or(|x| x <= bound()),

@@ -1,4 +1,4 @@
-//! Crowds of people on legs.
+//! Crowds of people with legs.
 
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::scene::Scene;

@@ -1,4 +1,4 @@
-//! Short ways without a triangulation and without a visibility graph: a search on a grid of points, then the way is
+//! Short routes without a triangulation and without a visibility graph: a search on a grid of points, then the way is
 //! pulled taut like a string.
 
 use std::cmp::Reverse;
@@ -9,7 +9,7 @@ use sandbox::engine::math::Vector;
 use super::floors::Plan;
 use super::plans::edges;
 
-/// Points on a grid over a plan, with the straight ways between neighbors.
+/// Points on a grid over a plan, with the straight routes between neighbors.
 pub struct Web<'a> {
     plan: &'a Plan,
     walls: Vec<[Vector; 2]>,

@@ -1,11 +1,11 @@
-//! What sees what on a floor, and the lengths of shortest ways, by brute force: every straight line is tested against
+//! What sees what on a floor, and the lengths of shortest routes, by brute force: every straight line is tested against
 //! every wall.
 
 use std::f64::consts::{PI, TAU};
 
 use sandbox::engine::geometry::Area;
 use sandbox::engine::math::Vector;
-use sandbox::engine::ways::nearest_on;
+use sandbox::engine::routes::nearest_on;
 
 use super::plans::{Ring, contains, edges};
 
@@ -51,7 +51,7 @@ pub struct Sights {
     walls: Vec<[Vector; 2]>,
     /// The corners, with their sectors.
     corners: Vec<(Vector, Vec<Sector>)>,
-    /// The sectors of 180° and more: shortest ways bend there and nowhere else.
+    /// The sectors of 180° and more: shortest routes bend there and nowhere else.
     pub bends: Vec<Sector>,
 }
 
@@ -115,11 +115,11 @@ impl Sights {
             .walls
             .iter()
             .filter(|[a, b]| (nearest_on(place, *a, *b) - place).norm() <= TINY);
-        let ways = touching
+        let routes = touching
             .flatten()
             .map(|end| end - place)
             .filter(|way| way.norm() > TINY);
-        let mut angles: Vec<f64> = ways.map(|way| way.y.atan2(way.x)).collect();
+        let mut angles: Vec<f64> = routes.map(|way| way.y.atan2(way.x)).collect();
         angles.sort_by(f64::total_cmp);
         angles.dedup_by(|a, b| (*a - *b).abs() < TINY);
         let ends = angles
@@ -194,7 +194,7 @@ impl Sights {
     }
 
     /// The length of the shortest way from each of `starts` to the segment from `a` to `b`, which is seen from end to
-    /// end. By Dijkstra's algorithm over all straight ways between bends; infinite without a way.
+    /// end. By Dijkstra's algorithm over all straight routes between bends; infinite without a way.
     pub fn lengths(&self, [a, b]: [Vector; 2], starts: &[Vector]) -> Vec<f64> {
         let ends = |p: Vector| [nearest_on(p, a, b), a, b];
         let to_goal = |p: Vector, sees: &dyn Fn(Vector) -> bool| {
@@ -224,7 +224,7 @@ impl Sights {
         }
         let from = |&p: &Vector| {
             let direct = to_goal(p, &|end| self.sees(p, end));
-            let ways = bends
+            let routes = bends
                 .iter()
                 .zip(&lengths)
                 .map(|(bend, rest)| (bend, rest + (bend.place - p).norm()));
@@ -235,7 +235,7 @@ impl Sights {
                     best
                 }
             };
-            ways.fold(direct, fold)
+            routes.fold(direct, fold)
         };
         starts.iter().map(from).collect()
     }

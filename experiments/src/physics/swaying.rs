@@ -1,4 +1,4 @@
-//! People on legs in closed squares: from which density on they turn together, how fast, and how far apart.
+//! People with legs in closed squares: from which density on they turn together, how fast, and how far apart.
 
 use super::{grouped, mean, of_studies};
 use sandbox::analysis::statistics::Estimate;
@@ -37,7 +37,7 @@ const CURVES: [f64; 3] = [5.0, 6.0, 7.0];
 /// The tables and the map of what the law can and cannot do.
 pub const PRODUCT: Product = Product {
     name: "swaying",
-    about: "open question: from which density on do people on legs turn together in closed squares, and how fast?",
+    about: "open question: from which density on do people with legs turn together in closed squares, and how fast?",
     in_all: false,
     studies: &["sway_small", "sway_large", "sway"],
     needs: Needs::All,
@@ -53,10 +53,10 @@ pub const PRODUCT: Product = Product {
     find,
 };
 
-/// The table of other parameters, and of people on legs with fluid forces.
+/// The table of other parameters, and of people with legs with fluid forces.
 pub const RATES: Product = Product {
     name: "swaying-rates",
-    about: "open question: do people on legs turn together with other parameters, and over fluid forces?",
+    about: "open question: do people with legs turn together with other parameters, and over fluid forces?",
     in_all: false,
     studies: &["sway_rates"],
     needs: Needs::All,
@@ -245,7 +245,7 @@ fn sheet(rows: &[Combination]) -> Sheet {
         ),
         by_size(rows),
     ];
-    let title = "People on legs in closed squares; top rows and black: filmed (Gu et al. 2025)";
+    let title = "People with legs in closed squares; top rows and black: filmed (Gu et al. 2025)";
     Sheet::new(title, 3, [270.0, 210.0], panels)
 }
 
@@ -323,7 +323,7 @@ pub(super) fn frequencies(rows: &[Combination]) -> Panel {
     ];
     let x = Axis::linear("density [P/m²]", DENSITIES);
     let y = Axis::linear("frequency of the peak [rad/s]", [0.0, 0.6]);
-    Panel::new("people on legs in a square of 50 m × 20 m", x, y, marks)
+    Panel::new("people with legs in a square of 50 m × 20 m", x, y, marks)
         .with_legend(Corner::LowerRight)
 }
 

@@ -136,12 +136,12 @@ fn distances(count: usize) -> Vec<Place> {
 /// Places at equal distances along straight lines between `corners`.
 fn path(corners: &[[f64; 2]], count: usize) -> Vec<Place> {
     let corners: Vec<Vector> = corners.iter().map(|&corner| placed(corner)).collect();
-    let ways: Vec<Vector> = corners.windows(2).map(|ends| ends[1] - ends[0]).collect();
-    let length: f64 = ways.iter().map(|way| way.norm()).sum();
+    let routes: Vec<Vector> = corners.windows(2).map(|ends| ends[1] - ends[0]).collect();
+    let length: f64 = routes.iter().map(|way| way.norm()).sum();
     let place = |k: usize| {
         let along = length * (k as f64 + 0.5) / count as f64;
         let (mut left, mut position) = (along, corners[0]);
-        for way in &ways {
+        for way in &routes {
             let part = (left / way.norm()).clamp(0.0, 1.0);
             position += way * part;
             left -= way.norm() * part;

@@ -59,7 +59,7 @@ pub struct DrawOptions {
         value_parser = PossibleValuesParser::new(["density", "speed"])
     )]
     pub field: Option<String>,
-    /// Show the ways to an exit, waypoint, waiting area or queue, or to a point; may be repeated
+    /// Show the routes to an exit, waypoint, waiting area or queue, or to a point; may be repeated
     #[arg(long, value_name = "PLACE|X,Y", allow_hyphen_values = true)]
     pub paths: Vec<String>,
     /// Show the number of people out over time, by exit, and print the table: a scenario is run to its end

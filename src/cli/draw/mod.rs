@@ -193,7 +193,7 @@ fn check_format(out: &Path, is_animation: bool) -> Result<(), Failure> {
     )))
 }
 
-/// Opens the run, with the ways that are asked for.
+/// Opens the run, with the routes that are asked for.
 fn open(
     options: &DrawOptions,
     times: &Times,

@@ -1,4 +1,4 @@
-//! The ways to a place or a point, as `--paths` names them.
+//! The routes to a place or a point, as `--paths` names them.
 
 use std::sync::Arc;
 
@@ -6,12 +6,12 @@ use serde_json::json;
 
 use crate::cli::failure::Failure;
 use engine::math::Vector;
-use engine::ways::{Destination, Ways};
+use engine::routes::{Destination, Routes};
 use output::picture::Paths;
 use scenario::quote::shown;
 use scenario::{Scenario, WayFinding, suggestion};
 
-/// The ways to the place or point that `text` names.
+/// The routes to the place or point that `text` names.
 pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
     let refused = |reason: String| Failure::Input(format!("--paths {}: {reason}", shown(text)));
     let scene = &scenario.scene;
@@ -21,10 +21,10 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
     if place.is_none() && point.is_none() {
         return Err(refused(unknown(text, scenario)));
     }
-    let Some(ways) = &scene.ways else {
+    let Some(routes) = &scene.routes else {
         let straight = scenario.document["navigation"] == json!(WayFinding::Straight);
         let reason = match straight {
-            true => "`navigation` is `straight`, so agents follow no ways; set it to `paths`",
+            true => "`navigation` is `straight`, so agents follow no routes; set it to `paths`",
             false => "the scenario has neither walls nor journeys, so agents walk straight",
         };
         return Err(refused(reason.to_owned()));
@@ -42,13 +42,13 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
             )
         }
     };
-    let is_known = ways.leads_to(to);
-    let (ways, to) = match is_known {
-        true => (Arc::clone(ways), to),
+    let is_known = routes.leads_to(to);
+    let (routes, to) = match is_known {
+        true => (Arc::clone(routes), to),
         // No agent goes there, so the scene has no path map to it.
         false => {
             let goals: Vec<_> = place.map(|k| places[k].goals.clone()).into_iter().collect();
-            let extra = Ways::new(ways.floor.clone(), &goals, point.into_iter().collect())
+            let extra = Routes::new(routes.floor.clone(), &goals, point.into_iter().collect())
                 .map_err(|error| refused(format!("{error}; give a point that is")))?;
             let to = place.map_or(to, |_| Destination::Place(0));
             (Arc::new(extra), to)
@@ -56,7 +56,7 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
     };
     Ok(Paths {
         name,
-        ways,
+        routes,
         to,
         place: place.map(|k| k as u16),
         is_known,

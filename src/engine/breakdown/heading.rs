@@ -1,4 +1,4 @@
-//! The headings between which an agent chooses, by the law of headings.
+//! The headings between which an agent chooses, by the choice of headings.
 
 use serde::Serialize;
 
@@ -38,7 +38,7 @@ pub struct HeadingSeen {
 }
 
 impl HeadingChoice {
-    /// The choice of agent `i` of an evaluated frame; `None` if it follows no law of headings or does not walk.
+    /// The choice of agent `i` of an evaluated frame; `None` if it follows no choice of headings or does not walk.
     pub fn of(simulation: &Simulation, i: usize) -> Option<Self> {
         let fan: Fan = simulation.fan(i)?;
         let frame = simulation.frame();

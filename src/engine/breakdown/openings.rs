@@ -1,14 +1,14 @@
-//! The ways out of the room of an agent, and why it takes the one that it does.
+//! The routes out of the room of an agent, and why it takes the one that it does.
 
 use serde::Serialize;
 
-use crate::simulation::{Closed, Simulation, WayProspect};
+use crate::simulation::{Closed, RouteProspect, Simulation};
 
-/// The choice of an agent between ways.
+/// The choice of an agent between routes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct WayChoice {
-    /// The ways out of its room, and to its goal if that is in the room, the quickest first.
-    pub ways: Vec<WaySeen>,
+pub struct RouteOptions {
+    /// The routes out of its room, and to its goal if that is in the room, the quickest first.
+    pub routes: Vec<RouteSeen>,
     /// Whether it compares times; else it takes the shortest way that is open.
     pub by_time: bool,
     /// Why it takes its way.
@@ -21,7 +21,7 @@ pub struct WayChoice {
 
 /// A way, as an agent sees it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct WaySeen {
+pub struct RouteSeen {
     /// What it leads through: a door, an opening, or nothing.
     pub through: String,
     /// The length up to there, meters.
@@ -43,14 +43,14 @@ pub struct WaySeen {
     pub taken: bool,
 }
 
-impl WayChoice {
-    /// The choice of agent `i`; `None` if it does not choose between ways.
+impl RouteOptions {
+    /// The choice of agent `i`; `None` if it does not choose between routes.
     pub fn of(simulation: &Simulation, i: usize) -> Option<Self> {
-        let decision = simulation.way_decision(i)?;
+        let decision = simulation.route_decision(i)?;
         let plan = decision.plan;
         let scene = simulation.scene();
         let rooms = scene.rooms()?;
-        let name = |way: &WayProspect| {
+        let name = |way: &RouteProspect| {
             let Some(side) = way.side else {
                 return "its goal in this room".to_owned();
             };
@@ -69,12 +69,12 @@ impl WayChoice {
         let is_quickest = prospects
             .first()
             .is_some_and(|best| best.side == plan.toward);
-        let ways = prospects.iter().map(|way| {
+        let routes = prospects.iter().map(|way| {
             let closed = way
                 .side
                 .and_then(|side| simulation.closed_way(i, plan.goal, Some(side)));
             let (expected, has_times) = (way.expected, by_time && closed.is_none());
-            WaySeen {
+            RouteSeen {
                 through: name(way),
                 length: way.length,
                 ahead: expected.ahead,
@@ -95,7 +95,7 @@ impl WayChoice {
                 (_, true) => "it takes the least time",
                 (_, false) => "no other was clearly quicker when the agent last compared them",
             },
-            ways: ways.collect(),
+            routes: routes.collect(),
             again_at_secs: simulation.frame().clock.time_at(plan.decides_at),
             changes: plan.changes,
         })

@@ -29,8 +29,8 @@ impl Display for Breakdown {
             self.rest_density,
             self.pressure
         )?;
-        self.write_way(f)?;
-        self.write_way_choice(f)?;
+        self.write_route(f)?;
+        self.write_route_choice(f)?;
         self.write_visit(f)?;
         self.write_choice(f)?;
         self.write_accelerations(f)?;
@@ -54,16 +54,16 @@ impl Display for Breakdown {
 
 impl Breakdown {
     /// The lines about the agent's way and journey; empty without both.
-    pub fn way_and_visit(&self) -> String {
+    pub fn route_and_visit(&self) -> String {
         let mut text = String::new();
         // Writing to a string cannot fail.
-        self.write_way(&mut text).ok();
-        self.write_way_choice(&mut text).ok();
+        self.write_route(&mut text).ok();
+        self.write_route_choice(&mut text).ok();
         self.write_visit(&mut text).ok();
         text
     }
 
-    fn write_way(&self, f: &mut impl Write) -> fmt::Result {
+    fn write_route(&self, f: &mut impl Write) -> fmt::Result {
         let Some(way) = &self.way else {
             return Ok(());
         };
@@ -82,19 +82,19 @@ impl Breakdown {
         )
     }
 
-    fn write_way_choice(&self, f: &mut impl Write) -> fmt::Result {
-        let Some(choice) = &self.way_choice else {
+    fn write_route_choice(&self, f: &mut impl Write) -> fmt::Result {
+        let Some(choice) = &self.route_choice else {
             return Ok(());
         };
         match choice.by_time {
             true => writeln!(
                 f,
-                "  way by time: {}; compared again at {:.2} s, changed {} times",
+                "  quickest route: {}; compared again at {:.2} s, changed {} times",
                 choice.reason, choice.again_at_secs, choice.changes
             )?,
-            false => writeln!(f, "  ways out of the room: {}", choice.reason)?,
+            false => writeln!(f, "  routes out of the room: {}", choice.reason)?,
         }
-        for way in &choice.ways {
+        for way in &choice.routes {
             let flow = way.flow_per_sec.map_or(String::new(), |flow| {
                 format!(", {} ahead at {flow:.2} P/s", way.ahead)
             });
@@ -233,7 +233,7 @@ impl Display for Alternative {
         if let Some(weight) = self.weight {
             write!(f, ", weight {weight}")?;
         }
-        if let Some(closed) = &self.way_closed {
+        if let Some(closed) = &self.route_closed {
             write!(f, ", the way is {closed}")?;
         }
         let Some(times) = &self.expected else {

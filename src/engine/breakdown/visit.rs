@@ -89,7 +89,7 @@ pub struct Alternative {
     pub expected: Option<Expected>,
     /// Until when doors close the way there.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub way_closed: Option<Closed>,
+    pub route_closed: Option<Closed>,
 }
 
 impl Visit {
@@ -182,15 +182,15 @@ fn in_words(reason: Reason) -> &'static str {
 impl Alternative {
     fn of(simulation: &Simulation, i: usize, prospect: &Prospect, weight: Option<f64>) -> Self {
         let state = &simulation.progress().places[usize::from(prospect.place)];
-        let way_closed = simulation.closed_way(i, prospect.place, None);
+        let route_closed = simulation.closed_way(i, prospect.place, None);
         Self {
             place: name(simulation, prospect.place),
             open: prospect.open,
             length: Some(prospect.length).filter(|length| length.is_finite()),
             bound: state.bound,
             weight,
-            expected: prospect.expected.filter(|_| way_closed.is_none()),
-            way_closed,
+            expected: prospect.expected.filter(|_| route_closed.is_none()),
+            route_closed,
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::distribution::Distribution;
 use crate::geometry::Ring;
 use crate::math::{Vector, direction, sides};
-use crate::ways::{Goal, nearest_on};
+use crate::routes::{Goal, nearest_on};
 
 /// A place that agents visit.
 #[derive(Debug, Clone, PartialEq)]

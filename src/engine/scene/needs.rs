@@ -5,8 +5,8 @@ use crate::forces::near::Wanted;
 use crate::forces::own::Force;
 use crate::forces::walking::{Headings, WalkingLaw};
 use crate::profile::Profile;
+use crate::routes::Narrowings;
 use crate::scene::Scene;
-use crate::ways::Narrowings;
 
 /// The widest place that counts as a narrowing, meters.
 const WIDEST_NARROWING: f64 = 6.0;
@@ -99,9 +99,9 @@ impl Scene {
     /// The narrowings of the floor, if a walking law heeds them.
     pub fn narrowings(&self) -> Narrowings {
         let heeds = self.headings().any(|law| law.gap.narrowing_share != 0.0);
-        let ways = self.ways.as_ref().filter(|_| heeds);
-        ways.map_or_else(Narrowings::default, |ways| {
-            Narrowings::of(&ways.floor.mesh, WIDEST_NARROWING)
+        let routes = self.routes.as_ref().filter(|_| heeds);
+        routes.map_or_else(Narrowings::default, |routes| {
+            Narrowings::of(&routes.floor.mesh, WIDEST_NARROWING)
         })
     }
 

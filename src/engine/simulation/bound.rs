@@ -6,8 +6,8 @@ use super::stream::{BEFORE, Stream};
 use super::{Crowd, Simulation, Stage};
 use crate::clock::Clock;
 use crate::journeys::{Kind, Place, Status};
+use crate::routes::Destination;
 use crate::scene::Scene;
-use crate::ways::Destination;
 
 /// The least flow that agents expect, P/(m s): about what Weidmann (1993) gives.
 pub(super) const FLOW_PER_METER: f64 = 1.3;
@@ -48,14 +48,14 @@ impl Simulation {
             let stage = if has_trips {
                 Stage::Journeys
             } else {
-                Stage::Ways
+                Stage::Routes
             };
             self.stages.time(stage, || crowd.count_streams(scene));
         }
     }
 }
 
-/// The lengths of the ways of agents to each of `count` lines, meters, from the line of each agent and its length.
+/// The lengths of the routes of agents to each of `count` lines, meters, from the line of each agent and its length.
 fn lengths_of(agents: Vec<Option<(usize, f64)>>, count: usize) -> Vec<Vec<f64>> {
     let mut lengths = vec![Vec::new(); count];
     for (line, length) in agents.into_iter().flatten() {
@@ -123,8 +123,8 @@ impl Crowd {
             let detours = agents.plan.get(i).copied().flatten();
             let length = match detours.is_some_and(|plan| plan.detours) {
                 false => route.length(),
-                true => scene.ways.as_ref().map_or(f64::INFINITY, |ways| {
-                    ways.length(agents.position[i], Destination::Place(trip.place))
+                true => scene.routes.as_ref().map_or(f64::INFINITY, |routes| {
+                    routes.length(agents.position[i], Destination::Place(trip.place))
                 }),
             };
             Some((usize::from(trip.place), length))

@@ -10,8 +10,8 @@ use crate::journeys::{Choice, Journey, JourneyStage, Kind, Place, Status, Trip};
 use crate::math::Vector;
 use crate::neighbors::BLOCK;
 use crate::random::{self, Purpose};
+use crate::routes::{Destination, RoutesOut, SLACK};
 use crate::scene::Scene;
-use crate::ways::{Destination, SLACK, WaysOut};
 
 /// Agents that choose the nearest place choose again after this time, seconds.
 const NEAREST_EVERY: f64 = 1.0;
@@ -46,10 +46,10 @@ pub(super) struct Chooser<'a> {
 pub(super) struct Seen {
     /// The number of the stage in its journey.
     pub(super) stage: u16,
-    /// The lengths of the ways to its places, meters.
+    /// The lengths of the routes to its places, meters.
     pub(super) lengths: Vec<f64>,
-    /// The ways out of its room that lead to its place, if it compares times.
-    pub(super) ways_out: Option<WaysOut>,
+    /// The routes out of its room that lead to its place, if it compares times.
+    pub(super) routes_out: Option<RoutesOut>,
 }
 
 /// A place of an agent's stage, as the agent sees it.
@@ -235,10 +235,10 @@ impl<'a> Chooser<'a> {
         places.iter().zip(lengths).map(see).collect()
     }
 
-    /// Adds the waits on the ways to the expected times. Waits only lengthen times, so a place that is not clearly
+    /// Adds the waits on the routes to the expected times. Waits only lengthen times, so a place that is not clearly
     /// quicker than place `before` without them is skipped unless it is asked for: its time is then a lower bound.
     fn expect_waits(&self, prospects: &mut [Prospect], before: Option<u16>) {
-        let mut known = self.seen.and_then(|seen| seen.ways_out.clone());
+        let mut known = self.seen.and_then(|seen| seen.routes_out.clone());
         let mut wait = |prospect: &mut Prospect| {
             let to = (self.agent, prospect.place, prospect.length);
             let expected = prospect.expected.as_mut()?;
@@ -258,10 +258,10 @@ impl<'a> Chooser<'a> {
         }
     }
 
-    /// The lengths of the ways from `p` to some places, meters; infinite where there is none.
+    /// The lengths of the routes from `p` to some places, meters; infinite where there is none.
     pub(super) fn lengths(&self, p: Vector, places: &[u16]) -> Vec<f64> {
-        match &self.scene.ways {
-            Some(ways) => ways.lengths(p, places),
+        match &self.scene.routes {
+            Some(routes) => routes.lengths(p, places),
             None => vec![f64::INFINITY; places.len()],
         }
     }
@@ -269,8 +269,8 @@ impl<'a> Chooser<'a> {
     /// The length of the way to a place, meters; infinite if there is none.
     pub(super) fn length(&self, place: u16) -> f64 {
         let position = self.crowd.agents.position[self.agent];
-        let ways = self.scene.ways.as_ref();
-        let length = ways.map(|ways| ways.length(position, Destination::Place(place)));
+        let routes = self.scene.routes.as_ref();
+        let length = routes.map(|routes| routes.length(position, Destination::Place(place)));
         length.unwrap_or(f64::INFINITY)
     }
 
@@ -327,13 +327,13 @@ impl Crowd {
             let compares = matches!(stage.choice, Choice::Quickest);
             let mut known = stage.places.iter().zip(&lengths).filter(|_| compares);
             let known = known.find(|(place, length)| **place == trip.place && length.is_finite());
-            let ways_out = known.and_then(|(&place, &length)| {
-                self.ways_out_to(scene, (agent, place, length), None)
+            let routes_out = known.and_then(|(&place, &length)| {
+                self.routes_out_to(scene, (agent, place, length), None)
             });
             Some(Seen {
                 stage: trip.stage,
                 lengths,
-                ways_out,
+                routes_out,
             })
         });
         seen.collect()

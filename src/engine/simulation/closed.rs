@@ -1,12 +1,12 @@
-//! Which ways closed doors block, and until when.
+//! Which routes closed doors block, and until when.
 
 use serde::Serialize;
 
 use super::Simulation;
 use crate::journeys::{Change, ChangeKind};
 use crate::math::Vector;
+use crate::routes::{Rooms, Side};
 use crate::scene::Scene;
-use crate::ways::{Rooms, Side};
 
 /// A way goes on this far behind an opening, meters.
 const BEYOND: f64 = 1e-3;
@@ -123,7 +123,7 @@ fn lengths(rooms: &Rooms, goal: usize, open: &[bool]) -> Vec<f64> {
     })
 }
 
-/// Whether all ways to a goal that leave by one of some sides lead through a door that is not open.
+/// Whether all routes to a goal that leave by one of some sides lead through a door that is not open.
 fn blocks(rooms: &Rooms, (sides, goal): (&[Side], usize), open: &[bool]) -> bool {
     let onward = lengths(rooms, goal, open);
     let is_closed = |&side: &Side| is_shut(rooms, side, open) || !onward[side.index()].is_finite();

@@ -119,12 +119,12 @@ impl Simulation {
         });
     }
 
-    /// Finds the next points on the ways around walls: for all agents if `is_time`, otherwise for those without one.
-    pub(super) fn follow_ways(&mut self, is_time: bool) {
+    /// Finds the next points on the routes around walls: for all agents if `is_time`, otherwise for those without one.
+    pub(super) fn follow_routes(&mut self, is_time: bool) {
         let (scene, agents) = (&self.fixed.scene, &mut self.crowd.agents);
-        if let Some(ways) = &scene.ways {
+        if let Some(routes) = &scene.routes {
             self.stages
-                .time(Stage::Ways, || agents.follow(ways, is_time, scene.seed));
+                .time(Stage::Routes, || agents.follow(routes, is_time, scene.seed));
         }
     }
 
@@ -135,8 +135,8 @@ impl Simulation {
         preferred.resize(crowd.agents.len(), Vector::zeros());
         self.stages.time(Stage::PreferredVelocity, || {
             let agents = &crowd.agents;
-            // Agents walk to the next point of their way; without ways, straight to their goal.
-            let aims = match scene.ways {
+            // Agents walk to the next point of their way; without routes, straight to their goal.
+            let aims = match scene.routes {
                 Some(_) => &agents.aim,
                 None => &agents.goal,
             };

@@ -1,4 +1,4 @@
-//! The rule by which agents choose, between places and between ways.
+//! The rule by which agents choose, between places and between routes.
 //!
 //! An agent expects to pass a line when it has walked there, or when all agents that pass it before have walked there
 //! and passed at its flow, whichever is later. Agents change their minds only for what is clearly quicker.

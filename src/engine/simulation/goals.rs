@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::{Crowd, Simulation};
 use crate::journeys::Status;
 use crate::math::Vector;
+use crate::routes::{Destination, Routes, WayError};
 use crate::scene::Scene;
-use crate::ways::{Destination, WayError, Ways};
 
 /// An agent is not present.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +87,7 @@ impl Simulation {
     /// gets a new goal.
     pub fn set_goals(&mut self, new: &[(u32, Vector)]) -> Result<(), GoalError> {
         let new = self.indexed(new)?;
-        self.find_ways(&new)?;
+        self.find_routes(&new)?;
         for &(i, goal) in &new {
             self.crowd.leave_journey(&self.fixed.scene, i);
             let agents = &mut self.crowd.agents;
@@ -97,9 +97,12 @@ impl Simulation {
         Ok(())
     }
 
-    /// From now on, agents find their ways on this floor. No effect if the scene has path maps already.
-    pub fn add_ways(&mut self, ways: Ways) {
-        self.fixed.scene.ways.get_or_insert_with(|| Arc::new(ways));
+    /// From now on, agents find their routes on this floor. No effect if the scene has path maps already.
+    pub fn add_routes(&mut self, routes: Routes) {
+        self.fixed
+            .scene
+            .routes
+            .get_or_insert_with(|| Arc::new(routes));
     }
 
     /// The indices of the agents, with their new goals.
@@ -128,10 +131,10 @@ impl Simulation {
     }
 
     /// Makes path maps to goals of several agents, and to those behind walls.
-    fn find_ways(&mut self, new: &[(usize, Vector)]) -> Result<(), GoalError> {
+    fn find_routes(&mut self, new: &[(usize, Vector)]) -> Result<(), GoalError> {
         let scene = &mut self.fixed.scene;
         let agents = &self.crowd.agents;
-        let Some(ways) = &mut scene.ways else {
+        let Some(routes) = &mut scene.routes else {
             return Ok(());
         };
         let mut last = None;
@@ -144,20 +147,20 @@ impl Simulation {
                 let crossing = scene.walls.first_crossing(position, goal, &near);
                 crossing.is_some()
             };
-            if !ways.leads_to(to) {
+            if !routes.leads_to(to) {
                 if !is_shared && !is_blocked() {
                     continue;
                 }
                 let is_used = |other| {
                     agents.goal.contains(&other) || new.iter().any(|&(_, goal)| goal == other)
                 };
-                let made = Arc::make_mut(ways).add_goal(goal, is_used);
+                let made = Arc::make_mut(routes).add_goal(goal, is_used);
                 made.map_err(|error| match error {
                     WayError::NotOnFloor(_) => GoalError::NotOnFloor(goal),
                     error => error.into(),
                 })?;
             }
-            if ways.way(position, to).is_none() {
+            if routes.way(position, to).is_none() {
                 return Err(GoalError::NoWay {
                     agent: agents.id[i],
                     from: position,

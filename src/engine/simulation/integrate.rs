@@ -288,12 +288,12 @@ fn move_freely(
 /// The largest squared distance between two positions of an agent of a block, m².
 #[inline(always)]
 fn farthest(positions: &[Vector], before: &[Vector]) -> f64 {
-    let mut ways = [0.0; BLOCK];
+    let mut routes = [0.0; BLOCK];
     let pairs = positions.iter().zip(before);
-    for (way, (position, start)) in ways.iter_mut().zip(pairs) {
+    for (way, (position, start)) in routes.iter_mut().zip(pairs) {
         *way = (position - start).norm_squared();
     }
-    greatest(&ways, |&way| way)
+    greatest(&routes, |&way| way)
 }
 
 /// Finds the shifts of the agents of a block since the sort, strip by strip.

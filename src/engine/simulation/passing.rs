@@ -11,8 +11,8 @@ use super::{Arrival, Crowd, Simulation, Stage, TripEnd};
 use crate::journeys::{Kind, Place, Status};
 use crate::math::{Vector, direction, perpendicular};
 use crate::neighbors::{BLOCK, Neighbors, TASK};
+use crate::routes::{nearest_on, side};
 use crate::scene::Scene;
-use crate::ways::{nearest_on, side};
 
 /// The body of an agent that has left by an exit walks on this far behind the line, meters. With less, the flow through
 /// a door would depend on the position of the line, because agents walk slower behind a crowd than with free floor
@@ -299,7 +299,7 @@ impl Crowd {
         self.agents.forget_route(i);
     }
 
-    /// Removes the bodies of agents that have left: at the ends of their ways, after [`OUTSIDE_SECS`], and, in coarse
+    /// Removes the bodies of agents that have left: at the ends of their routes, after [`OUTSIDE_SECS`], and, in coarse
     /// frames, where they meet an agent that is present and ahead of them.
     fn remove_bodies(&mut self, scene: &Scene) {
         let outside = (0..self.agents.len()).filter(|&i| !self.agents.is_present(i));

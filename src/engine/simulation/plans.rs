@@ -1,4 +1,4 @@
-//! Ways by time: in coarse frames agents that enter a room compare its openings. Those that have a choice compare them
+//! Quickest routes: in coarse frames agents that enter a room compare its openings. Those that have a choice compare them
 //! again now and then.
 //!
 //! `expected.rs` has the rule. Beyond an opening, the least time to the goal is that of Dijkstra's algorithm over
@@ -11,13 +11,13 @@ use rayon::prelude::*;
 use super::bound::is_due;
 use super::expected::{is_clearly_quicker, least_or_kept};
 use super::stream::Stream;
-use super::times::{SINGLE_FILE, WayProspect, quickest};
+use super::times::{RouteProspect, SINGLE_FILE, quickest};
 use super::{Crowd, Simulation, Stage};
 use crate::journeys::Status;
 use crate::neighbors::{BLOCK, TASK};
 use crate::random::{self, Purpose};
+use crate::routes::{Located, Plan, Rooms, Routes, RoutesOut, Side};
 use crate::scene::Scene;
-use crate::ways::{Located, Plan, Rooms, Side, Ways, WaysOut};
 
 /// Agents are due again after a random time in this range, seconds.
 const AGAIN: [f64; 2] = [2.0, 5.0];
@@ -33,18 +33,18 @@ const LEAST_BATCH: usize = 8;
 /// width: they walk straight to it, not to the corner that the shortest way bends around.
 const CROWD_PER_METER: f64 = 3.0;
 
-/// The decision of an agent between the ways out of its room.
+/// The decision of an agent between the routes out of its room.
 #[derive(Debug, Clone, PartialEq)]
-pub struct WayDecision {
+pub struct RouteDecision {
     /// Its plan.
     pub plan: Plan,
     /// The side of the opening by which the shortest way leaves the room; `None`: the goal is there.
     pub shortest: Option<Side>,
-    /// The ways.
-    pub prospects: Vec<WayProspect>,
+    /// The routes.
+    pub prospects: Vec<RouteProspect>,
 }
 
-/// An agent that compares its ways.
+/// An agent that compares its routes.
 struct Due {
     agent: usize,
     /// Whether it has no plan yet.
@@ -53,45 +53,45 @@ struct Due {
     from: Option<u32>,
     /// Where it is located now.
     located: Located,
-    ways: WaysOut,
+    routes: RoutesOut,
 }
 
 impl Simulation {
-    /// In coarse frames: agents that choose their ways by time compare them.
+    /// In coarse frames: agents that choose their quickest routes compare them.
     pub(super) fn follow_plans(&mut self) {
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
-        if let Some(ways) = &scene.ways
-            && let Some(rooms) = ways.rooms()
+        if let Some(routes) = &scene.routes
+            && let Some(rooms) = routes.rooms()
             && crowd.decides()
         {
             self.stages
-                .time(Stage::Ways, || crowd.compare_ways(scene, ways, rooms));
+                .time(Stage::Routes, || crowd.compare_routes(scene, routes, rooms));
         }
     }
 
-    /// The decision of agent `i` with what it expects now; `None` if it does not choose between ways.
-    pub fn way_decision(&self, i: usize) -> Option<WayDecision> {
+    /// The decision of agent `i` with what it expects now; `None` if it does not choose between routes.
+    pub fn route_decision(&self, i: usize) -> Option<RouteDecision> {
         let (scene, crowd) = (&self.fixed.scene, &self.crowd);
         let plan = crowd.agents.plan.get(i).copied().flatten()?;
-        let ways = scene.ways.as_ref()?;
+        let routes = scene.routes.as_ref()?;
         let p = crowd.agents.position[i];
-        let here = plan.located.triangle_at(ways.rooms()?, p)?;
-        let ways_out = ways.ways_out((p, here), plan.goal, None, None)?;
-        Some(WayDecision {
+        let here = plan.located.triangle_at(routes.rooms()?, p)?;
+        let routes_out = routes.routes_out((p, here), plan.goal, None, None)?;
+        Some(RouteDecision {
             plan,
-            shortest: ways_out.shortest.and_then(|shortest| shortest.side),
-            prospects: crowd.prospects_of(scene, i, &ways_out),
+            shortest: routes_out.shortest.and_then(|shortest| shortest.side),
+            prospects: crowd.prospects_of(scene, i, &routes_out),
         })
     }
 }
 
 impl Crowd {
-    fn compare_ways(&mut self, scene: &Scene, ways: &Ways, rooms: &Rooms) {
+    fn compare_routes(&mut self, scene: &Scene, routes: &Routes, rooms: &Rooms) {
         let progress = &mut self.progress;
         let sides = rooms.sides().len();
         progress.sides.resize_with(sides, Stream::default);
         progress.onward.resize(rooms.goals(), Vec::new());
-        let due = self.due(scene, ways, rooms);
+        let due = self.due(scene, routes, rooms);
         if is_due(&self.clock) {
             self.look_ahead(scene);
         }
@@ -125,10 +125,10 @@ impl Crowd {
         }
     }
 
-    /// The agents that enter a room, have a new goal or compare their ways again, in a fixed order. Of the others,
+    /// The agents that enter a room, have a new goal or compare their routes again, in a fixed order. Of the others,
     /// those that may have left their room note where they are, and those that are due but have no choice draw a new
     /// time.
-    fn due(&mut self, scene: &Scene, ways: &Ways, rooms: &Rooms) -> Vec<Due> {
+    fn due(&mut self, scene: &Scene, routes: &Routes, rooms: &Rooms) -> Vec<Due> {
         let mut plans = std::mem::take(&mut self.agents.plan);
         plans.resize(self.agents.len(), None);
         let (crowd, agents, frame) = (&*self, &self.agents, self.clock.frame());
@@ -139,7 +139,7 @@ impl Crowd {
                 .is_none_or(|trip| trip.status == Status::Walking || trip.place_ahead().is_none());
             let walks = walks && agents.is_present(agent);
             let to = walks.then(|| agents.destination(agent));
-            let goal = to.and_then(|to| ways.map_to(to));
+            let goal = to.and_then(|to| routes.map_to(to));
             let p = agents.position[agent];
             let goes_on = |plan: &Plan| Some(plan.goal) == goal && plan.decides_at > frame;
             if plan.is_some_and(|plan| goes_on(&plan) && plan.located.stays_at(p)) {
@@ -173,7 +173,7 @@ impl Crowd {
                 is_new: before.is_none(),
                 from,
                 located,
-                ways: ways.ways_out((p, here), goal, None, None)?,
+                routes: routes.routes_out((p, here), goal, None, None)?,
             })
         });
         let mut due: Vec<Due> = due.collect();
@@ -192,12 +192,12 @@ impl Crowd {
         self.clock.coarse_frame_at(again)
     }
 
-    /// An agent that is due compares its ways; `afresh`: whatever it has planned.
+    /// An agent that is due compares its routes; `afresh`: whatever it has planned.
     fn plan(&mut self, scene: &Scene, due: &Due, afresh: bool) {
-        let (Some(ways), Some(rooms)) = (&scene.ways, scene.rooms()) else {
+        let (Some(routes), Some(rooms)) = (&scene.routes, scene.rooms()) else {
             return;
         };
-        let (i, goal) = (due.agent, due.ways.goal);
+        let (i, goal) = (due.agent, due.routes.goal);
         self.look_ahead_to(scene, usize::from(goal));
         let old = self.agents.plan[i];
         let (p, here) = (self.agents.position[i], due.located.triangle());
@@ -205,12 +205,12 @@ impl Crowd {
         if let Some(side) = passed {
             self.progress.sides[side.index()].pass();
         }
-        let prospects = self.prospects_of(scene, i, &due.ways);
+        let prospects = self.prospects_of(scene, i, &due.routes);
         let is_lost = passed.is_none() && due.from.is_some();
         let planned = old.filter(|old| old.goal == goal && !afresh && !is_lost);
         let kept = kept(planned, passed, &prospects);
         let crossed = passed.or(old.and_then(|old| old.crossed));
-        let shortest = due.ways.shortest.map(|shortest| shortest.side);
+        let shortest = due.routes.shortest.map(|shortest| shortest.side);
         let leads_on =
             |side: &Option<Side>| side.is_none() || *side != crossed.map(|side| side.other());
         let usual = shortest.filter(leads_on);
@@ -232,7 +232,7 @@ impl Crowd {
             changes: old.map_or(0, |old| old.changes) + u32::from(changes),
         };
         let to = self.agents.destination(i);
-        if old.and_then(|old| old.detour(ways, to)) != plan.detour(ways, to) {
+        if old.and_then(|old| old.detour(routes, to)) != plan.detour(routes, to) {
             self.agents.forget_route(i);
         }
         let left = old.and_then(|old| old.toward);
@@ -254,7 +254,7 @@ impl Crowd {
         }
         let (p, here) = (self.agents.position[due.agent], due.located.triangle());
         let length = |side| {
-            let known = due.ways.through(side).map(|[length, _]| length);
+            let known = due.routes.through(side).map(|[length, _]| length);
             let length = known.or_else(|| rooms.length_to(p, here, side));
             length.unwrap_or(0.0)
         };
@@ -292,7 +292,7 @@ fn turns(old: Option<Plan>) -> u32 {
 }
 
 /// Whether a crowd stands before the opening of a way, and several people pass it beside each other.
-fn is_crowded(way: &WayProspect, rooms: &Rooms) -> bool {
+fn is_crowded(way: &RouteProspect, rooms: &Rooms) -> bool {
     let width = way.side.map(|side| rooms.opening(side).width());
     let width = width.filter(|&width| width >= SINGLE_FILE);
     width.is_some_and(|width| f64::from(way.expected.ahead) >= CROWD_PER_METER * width)
@@ -301,14 +301,14 @@ fn is_crowded(way: &WayProspect, rooms: &Rooms) -> bool {
 /// The way that an agent takes: the quickest, if that is clearly quicker than the one that it has kept; else the
 /// shortest one that does not lead back, `usual`, if it is not slower than the one kept.
 fn chosen(
-    kept: Option<WayProspect>,
-    usual: Option<WayProspect>,
-    prospects: &[WayProspect],
-) -> Option<WayProspect> {
+    kept: Option<RouteProspect>,
+    usual: Option<RouteProspect>,
+    prospects: &[RouteProspect],
+) -> Option<RouteProspect> {
     let times = prospects.iter().map(|way| (*way, way.expected.total_secs));
     let (chosen, _) = least_or_kept(times, kept, is_clearly_quicker)?;
     let is_kept = kept == Some(chosen);
-    let is_slower = |way: &WayProspect| way.expected.total_secs > chosen.expected.total_secs;
+    let is_slower = |way: &RouteProspect| way.expected.total_secs > chosen.expected.total_secs;
     Some(
         usual
             .filter(|usual| is_kept && !is_slower(usual))
@@ -317,14 +317,18 @@ fn chosen(
 }
 
 /// The way that leaves the room by a side.
-fn leaving_by(side: Option<Side>, prospects: &[WayProspect]) -> Option<WayProspect> {
+fn leaving_by(side: Option<Side>, prospects: &[RouteProspect]) -> Option<RouteProspect> {
     prospects.iter().find(|way| way.side == side).copied()
 }
 
 /// The way that an agent keeps unless another one is clearly quicker: the one that it has planned, and after it has
 /// passed an opening the best one that does not lead back. An agent that was pushed back through an opening keeps the
 /// way through it.
-fn kept(old: Option<Plan>, passed: Option<Side>, prospects: &[WayProspect]) -> Option<WayProspect> {
+fn kept(
+    old: Option<Plan>,
+    passed: Option<Side>,
+    prospects: &[RouteProspect],
+) -> Option<RouteProspect> {
     let old = old?;
     let Some(passed) = passed else {
         return leaving_by(old.toward, prospects);

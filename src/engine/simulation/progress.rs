@@ -97,7 +97,7 @@ impl PlaceState {
         self.stream.pass();
     }
 
-    /// Counts an agent that is now bound for this place (`comes`), or no longer; the stream counts ways of known
+    /// Counts an agent that is now bound for this place (`comes`), or no longer; the stream counts routes of known
     /// `length`, meters.
     pub(super) fn count(&mut self, length: Option<f64>, comes: bool) {
         self.bound = match comes {

@@ -33,7 +33,7 @@ impl Simulation {
         self.advance_states(0.5 * dt);
         self.pack();
         self.update_density_and_pressure(0.5 * dt);
-        self.follow_ways(self.crowd.clock.is_coarse());
+        self.follow_routes(self.crowd.clock.is_coarse());
         self.update_preferred_velocity();
         self.update_acceleration();
         if let Err(fault) = self.check() {

@@ -1,4 +1,4 @@
-//! What the time gap of the law of headings depends on.
+//! What the time gap of the choice of headings depends on.
 
 use super::{Fixed, Simulation};
 use crate::forces::walking::headings::{Fan, Headings, before_wall};
@@ -12,7 +12,7 @@ const BEYOND: f64 = 1.0;
 const MUCH_NARROWER: f64 = 1.5;
 
 impl Simulation {
-    /// The headings between which agent `i` chooses; `None` if it follows no law of headings or does not walk.
+    /// The headings between which agent `i` chooses; `None` if it follows no choice of headings or does not walk.
     pub fn fan(&self, i: usize) -> Option<Fan> {
         let frame = self.frame();
         let law = self.blend(i).walking_law()?;

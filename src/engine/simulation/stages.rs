@@ -19,8 +19,8 @@ pub enum Stage {
     Packing,
     /// Step 1B.
     DensityAndPressure,
-    /// Next corners on the ways around walls, coarse.
-    Ways,
+    /// Next corners on the routes around walls, coarse.
+    Routes,
     /// Step 2.
     PreferredVelocity,
     /// Walking laws, coarse.
@@ -44,7 +44,7 @@ impl Stage {
         Self::Neighbors,
         Self::Packing,
         Self::DensityAndPressure,
-        Self::Ways,
+        Self::Routes,
         Self::PreferredVelocity,
         Self::WalkingLaws,
         Self::Rvo,
@@ -62,7 +62,7 @@ impl Stage {
             Self::Neighbors => "neighbors",
             Self::Packing => "packing",
             Self::DensityAndPressure => "density_and_pressure",
-            Self::Ways => "ways",
+            Self::Routes => "routes",
             Self::PreferredVelocity => "preferred_velocity",
             Self::WalkingLaws => "walking_laws",
             Self::Rvo => "rvo",

@@ -100,8 +100,8 @@ impl Simulation {
             return Err(StateError); // the saved agents were not in the order of their cells
         }
         agents.position = positions;
-        let ways = agents.position.iter().zip(neighbors.sorted_at());
-        let squares = ways.map(|(now, then)| (now - then).norm_squared());
+        let routes = agents.position.iter().zip(neighbors.sorted_at());
+        let squares = routes.map(|(now, then)| (now - then).norm_squared());
         let farthest = squares.fold(0.0, f64::max);
         let mut strips = neighbors.take_strips();
         shift(&agents.position, neighbors.sorted_at(), &mut strips);
@@ -122,12 +122,12 @@ impl State {
             && self.schedule.fits(scene)
             && self.progress.fits(scene)
             && agents.route.iter().flatten().all(|route| {
-                let ways = scene.ways.as_ref();
-                ways.is_none_or(|ways| ways.knows(route))
+                let routes = scene.routes.as_ref();
+                routes.is_none_or(|routes| routes.knows(route))
             })
             && agents.plan.iter().flatten().all(|plan| {
-                let ways = scene.ways.as_ref();
-                ways.is_none_or(|ways| plan.fits(ways))
+                let routes = scene.routes.as_ref();
+                routes.is_none_or(|routes| plan.fits(routes))
             })
             && agents
                 .trip

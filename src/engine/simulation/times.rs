@@ -1,12 +1,12 @@
-//! The times that agents expect for the ways through openings.
+//! The times that agents expect for the routes through openings.
 
 use super::bound::FLOW_PER_METER_OF_OPENINGS;
 use super::expected::{Expected, Line};
 use super::stream::BEFORE;
 use super::{Crowd, Progress, Simulation};
 use crate::math::Vector;
+use crate::routes::{Destination, Rooms, RoutesOut, Side};
 use crate::scene::{Knowledge, Scene};
-use crate::ways::{Destination, Rooms, Side, WaysOut};
 
 /// Waiting before a closed door is expected to take this long, seconds.
 const CLOSED: f64 = 3600.0;
@@ -30,7 +30,7 @@ pub(super) struct Times<'a> {
 
 /// A way out of a room, or to a goal in it, as an agent sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WayProspect {
+pub struct RouteProspect {
     /// The side of the opening by which it leaves the room; `None`: the goal is there.
     pub side: Option<Side>,
     /// The length of the way to the opening, or to the goal, meters.
@@ -92,23 +92,23 @@ impl<'a> Times<'a> {
         })
     }
 
-    /// What an agent with this speed, m/s, expects of its ways out of a room; `onward` are the times beyond to their
+    /// What an agent with this speed, m/s, expects of its routes out of a room; `onward` are the times beyond to their
     /// goal, for the scene's speed.
     ///
-    /// Ways lead over the middles of openings, but the length of the shortest one is exact.
-    pub fn prospects(&self, ways: &WaysOut, onward: &[f64], speed: f64) -> Vec<WayProspect> {
+    /// Routes lead over the middles of openings, but the length of the shortest one is exact.
+    pub fn prospects(&self, routes: &RoutesOut, onward: &[f64], speed: f64) -> Vec<RouteProspect> {
         let speed = speed.max(SLOWEST);
         let slower = 1.0 / speed - 1.0 / self.scene.preferred_speed.max(SLOWEST);
-        let exact = ways.shortest.filter(|_| !self.rooms.has_one_way());
-        let direct = ways.direct.map(|length| WayProspect {
+        let exact = routes.shortest.filter(|_| !self.rooms.has_one_way());
+        let direct = routes.direct.map(|length| RouteProspect {
             side: None,
             length,
             expected: GOAL.expected(length / speed, 0.0, &[]),
         });
-        let through = ways.through.iter();
+        let through = routes.through.iter();
         let through = through.filter_map(|&(side, [length, aside])| {
             let beyond = onward.get(side.index()).filter(|time| time.is_finite())?;
-            let from = self.rooms.length_from(side, usize::from(ways.goal));
+            let from = self.rooms.length_from(side, usize::from(routes.goal));
             let over = length + aside + from;
             let excess = exact
                 .filter(|exact| exact.side == Some(side))
@@ -117,7 +117,7 @@ impl<'a> Times<'a> {
             let waits = Some(&line).filter(|_| self.scene.by_time());
             let [walking, waiting] = self.passing(side, waits, length, speed);
             let beyond = [*beyond, (aside - excess) / speed, from * slower];
-            Some(WayProspect {
+            Some(RouteProspect {
                 side: Some(side),
                 length,
                 expected: line.expected(walking, waiting, &beyond),
@@ -140,28 +140,28 @@ impl Simulation {
     /// openings, and its end. The shortest way if agents do not choose by time.
     pub fn course(&self, p: Vector, to: Destination) -> Vec<Vector> {
         let (scene, crowd) = (&self.fixed.scene, &self.crowd);
-        let Some(ways) = &scene.ways else {
+        let Some(routes) = &scene.routes else {
             return Vec::new();
         };
-        let known = (crowd.times(scene), ways.map_to(to));
+        let known = (crowd.times(scene), routes.map_to(to));
         let (Some(times), Some(goal)) = known else {
-            return ways.course(p, to);
+            return routes.course(p, to);
         };
         let (rooms, onward) = (times.rooms, times.onward(usize::from(goal)));
         let (mut points, mut here, mut back) = (Vec::new(), p, None);
         for _ in 0..=rooms.sides().len() {
             let located = rooms.floor.locate_or_nearest(None, here);
             let best = located.and_then(|t| {
-                let ways_out = ways.ways_out((here, t), goal, None, None)?;
-                let all = times.prospects(&ways_out, &onward, scene.preferred_speed);
-                let leads_on = |way: &&WayProspect| way.side.is_none() || way.side != back;
+                let routes_out = routes.routes_out((here, t), goal, None, None)?;
+                let all = times.prospects(&routes_out, &onward, scene.preferred_speed);
+                let leads_on = |way: &&RouteProspect| way.side.is_none() || way.side != back;
                 Some((t, quickest(all.iter().filter(leads_on))?))
             });
             let Some((t, best)) = best else {
                 break;
             };
             // As agents do: the shortest way as long as it leads through the chosen opening.
-            let mut course = ways.course(here, to);
+            let mut course = routes.course(here, to);
             let crossing = rooms.first_crossing(here, t, course.iter().copied());
             if crossing.map(|crossing| crossing.side) != best.side {
                 course = rooms.course((here, t), usize::from(goal), best.side);
@@ -209,25 +209,30 @@ impl Crowd {
         })
     }
 
-    /// What agent `i` expects of its ways out of a room.
-    pub(super) fn prospects_of(&self, scene: &Scene, i: usize, ways: &WaysOut) -> Vec<WayProspect> {
-        let onward = self.progress.onward.get(usize::from(ways.goal));
+    /// What agent `i` expects of its routes out of a room.
+    pub(super) fn prospects_of(
+        &self,
+        scene: &Scene,
+        i: usize,
+        routes: &RoutesOut,
+    ) -> Vec<RouteProspect> {
+        let onward = self.progress.onward.get(usize::from(routes.goal));
         let (Some(times), Some(onward)) = (self.times(scene), onward) else {
             return Vec::new();
         };
         let own = self.agents.preferred_speed.get(i).copied();
         let speed = own.unwrap_or(scene.preferred_speed);
-        times.prospects(ways, onward, speed)
+        times.prospects(routes, onward, speed)
     }
 
-    /// The ways out of the room of agent `i` that lead to a goal, if agents choose by time. The shortest way is
-    /// `length` meters long; `others`: the ways to another goal.
-    pub(super) fn ways_out_to(
+    /// The routes out of the room of agent `i` that lead to a goal, if agents choose by time. The shortest way is
+    /// `length` meters long; `others`: the routes to another goal.
+    pub(super) fn routes_out_to(
         &self,
         scene: &Scene,
         (i, goal, length): (usize, u16, f64),
-        others: Option<&WaysOut>,
-    ) -> Option<WaysOut> {
+        others: Option<&RoutesOut>,
+    ) -> Option<RoutesOut> {
         let rooms = scene.rooms().filter(|_| scene.by_time())?;
         let p = self.agents.position[i];
         let locate = || {
@@ -238,20 +243,20 @@ impl Crowd {
             }
         };
         let here = others.map(|others| others.triangle).or_else(locate)?;
-        let ways = scene.ways.as_ref()?;
-        ways.ways_out((p, here), goal, others, Some(length))
+        let routes = scene.routes.as_ref()?;
+        routes.routes_out((p, here), goal, others, Some(length))
     }
 
     /// The time that agent `i` expects for the way to a goal, seconds, whose length is `length` meters; `None` if it is
-    /// not known. Keeps the ways out of its room in `known`: other goals share their lengths.
+    /// not known. Keeps the routes out of its room in `known`: other goals share their lengths.
     pub(super) fn time_to(
         &self,
         scene: &Scene,
         (i, goal, length): (usize, u16, f64),
-        known: &mut Option<WaysOut>,
+        known: &mut Option<RoutesOut>,
     ) -> Option<f64> {
         if known.as_ref().is_none_or(|known| known.goal != goal) {
-            *known = Some(self.ways_out_to(scene, (i, goal, length), known.as_ref())?);
+            *known = Some(self.routes_out_to(scene, (i, goal, length), known.as_ref())?);
         }
         let all = self.prospects_of(scene, i, known.as_ref()?);
         quickest(&all).map(|way| way.expected.total_secs)
@@ -259,7 +264,9 @@ impl Crowd {
 }
 
 /// The way that takes the least time.
-pub(super) fn quickest<'a>(ways: impl IntoIterator<Item = &'a WayProspect>) -> Option<WayProspect> {
-    let ways = ways.into_iter().copied();
-    ways.min_by(|a, b| a.expected.total_secs.total_cmp(&b.expected.total_secs))
+pub(super) fn quickest<'a>(
+    routes: impl IntoIterator<Item = &'a RouteProspect>,
+) -> Option<RouteProspect> {
+    let routes = routes.into_iter().copied();
+    routes.min_by(|a, b| a.expected.total_secs.total_cmp(&b.expected.total_secs))
 }

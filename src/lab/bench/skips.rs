@@ -104,9 +104,9 @@ pub const SKIPS: [Skip; 11] = [
         undo: |simulation| Ok(Undone::Work(work::walking_law(simulation)?, &[])),
     },
     Skip {
-        name: "ways",
-        about: "looking up ways on path maps where agents walk straight",
-        undo: |simulation| Ok(Undone::Work(work::ways(simulation)?, &[])),
+        name: "routes",
+        about: "looking up routes on path maps where agents walk straight",
+        undo: |simulation| Ok(Undone::Work(work::routes(simulation)?, &[])),
     },
     Skip {
         name: "integrity",

@@ -27,7 +27,7 @@ use scenario::{Scenario, Setting, built_in, floor_plan};
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "stages",
     about: "time per stage of a frame, of shipped scenarios, dense crowds that avoid, a dense hall with walking laws, \
-            an office floor with ways by time, and people on legs who sway",
+            an office floor with quickest routes, and people with legs who sway",
     run,
 };
 
@@ -208,7 +208,7 @@ impl Sizes {
 
     fn offices(&self, say: &dyn Fn(&str)) -> [Result<Started, LabError>; 2] {
         ["shortest", "quickest"].map(|choice| {
-            say(&format!("office floor, {choice} ways"));
+            say(&format!("office floor, {choice} routes"));
             let profile = format!("walk+sph, {choice}");
             let crowd = office::settled(self.corridors, self.leaving, choice)?;
             Ok(Started::settled(
@@ -235,7 +235,7 @@ impl Sizes {
              walking to the right and \
              half to the left. Hall: {} pillars stand between the agents, at 4.7 P/m², and their goal; from {from:.1} \
              to {:.1} s, without and with a walking law. Office floor: {} people leave {} rooms from {:.1} to {:.1} s, \
-             by the shortest or by the quickest ways. Swaying crowd: questions/sway.json from {sway} to {} s; with \
+             by the shortest or by the quickest routes. Swaying crowd: questions/sway.json from {sway} to {} s; with \
              `sph` it is at rest. Rows of one crowd take turns. Measuring: the scenario's measurements and the search \
              for agents that stand, as in every run; it is not part of the frame. – : a stage that never runs.",
             self.agents,

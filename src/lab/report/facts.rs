@@ -124,7 +124,7 @@ fn of_queue(queue: &LongestQueue, is_first: bool) -> impl Iterator<Item = Fact> 
     let meaning = match is_first {
         true => format!(
             "most people at one time whose way leads there and who are slower than {SLOW} of their preferred speed, \
-             from there up to the first gap of {GAP} m along their ways, without those who have just started; of a \
+             from there up to the first gap of {GAP} m along their routes, without those who have just started; of a \
              queue with a line, those who have joined it"
         ),
         false => "the same".to_owned(),

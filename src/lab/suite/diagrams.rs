@@ -165,8 +165,8 @@ fn at_lines(lines: &[Line], runs: &[Runs]) -> Option<Panel> {
             Some([measured(line), [density?, speed?]])
         });
         let found: Vec<[[f64; 2]; 2]> = found.collect();
-        let ways = found.iter();
-        marks.extend(ways.map(|&way| Mark::line(way, Style::full(color, 0.5, ""))));
+        let routes = found.iter();
+        marks.extend(routes.map(|&way| Mark::line(way, Style::full(color, 0.5, ""))));
         let ends = found.iter().map(|way| way[1]);
         marks.push(Mark::dots(ends, Style::full(color, 2.4, "")));
     }

@@ -8,7 +8,7 @@ use engine::simulation::Simulation;
 use figures::colors::Rgb;
 use figures::plot::{BLACK, Disc, Mark, Style, label_lines};
 
-/// The color of agents in pictures of ways, and of those without a value.
+/// The color of agents in pictures of routes, and of those without a value.
 pub const FAINT: Rgb = [150, 154, 162];
 const TRAIL: Rgb = [104, 116, 142];
 /// The width of paths, and with many people, points.
@@ -82,7 +82,7 @@ impl Field {
     }
 }
 
-/// The agents of a picture; `faint`: in a picture of ways.
+/// The agents of a picture; `faint`: in a picture of routes.
 pub fn agents(picture: &Picture, faint: bool) -> Option<Mark> {
     let (crowd, doings) = (picture.crowd, doings(picture));
     let disc = |i: usize| {

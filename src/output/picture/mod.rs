@@ -1,4 +1,4 @@
-//! A picture of a crowd at one moment: floor and walls, places, zones, agents, their paths, a field; or the ways to a
+//! A picture of a crowd at one moment: floor and walls, places, zones, agents, their paths, a field; or the routes to a
 //! destination.
 
 mod agents;
@@ -52,7 +52,7 @@ pub struct Picture<'a> {
     /// The people.
     pub crowd: &'a Crowd,
     /// The simulation of these people, in the same order, if there is one: for their activities, for open and closed
-    /// places, for ways and forces on walls. Its frame must be evaluated.
+    /// places, for routes and forces on walls. Its frame must be evaluated.
     pub simulation: Option<&'a Simulation>,
     /// The numbers of places that are closed, without a simulation.
     pub closed: &'a [usize],
@@ -68,7 +68,7 @@ pub struct Picture<'a> {
     pub observed: &'a [(String, Observed)],
     /// Texts.
     pub labels: &'a [Label],
-    /// The ways that it shows, each in its own panel.
+    /// The routes that it shows, each in its own panel.
     pub paths: Vec<Paths>,
     /// The mass of an average person, kg, if walls are colored by the force on them.
     pub body_mass: Option<f64>,
@@ -203,10 +203,12 @@ impl<'a> Picture<'a> {
                 frame = self.frame(shown, panel);
             }
         }
-        let ways = self.paths.iter();
+        let routes = self.paths.iter();
         let panels = match self.paths.is_empty() {
             true => vec![self.panel(&frame, None)],
-            false => ways.map(|paths| self.panel(&frame, Some(paths))).collect(),
+            false => routes
+                .map(|paths| self.panel(&frame, Some(paths)))
+                .collect(),
         };
         Sheet::new(&self.title, columns, frame.size(), panels)
     }

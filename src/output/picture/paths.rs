@@ -1,12 +1,12 @@
-//! The ways to one destination: lengths as bands of color, the cells of the path map, and the ways of some agents.
+//! The routes to one destination: lengths as bands of color, the cells of the path map, and the routes of some agents.
 
 use std::sync::Arc;
 
 use super::{Frame, xy};
 use analysis::way_field::{Grid, WayField};
 use engine::math::{Vector, direction, perpendicular};
+use engine::routes::{Destination, Routes};
 use engine::simulation::Simulation;
-use engine::ways::{Destination, Ways};
 use figures::colors::{ColorMap, Rgb, WAIT};
 use figures::plot::{BLACK, Cells, ColorBar, Mark, Style};
 
@@ -14,7 +14,7 @@ use figures::plot::{BLACK, Cells, ColorBar, Mark, Style};
 const CELL: f64 = 0.5;
 /// The color of the borders of the path map's cells.
 pub const BORDER: Rgb = [120, 60, 130];
-/// The number of agents whose ways are shown.
+/// The number of agents whose routes are shown.
 const WAYS: usize = 12;
 /// The number of agents from which these are chosen.
 const CANDIDATES: usize = 2000;
@@ -25,12 +25,12 @@ pub const LEAST_WAIT: f64 = 5.0;
 /// The color of arrows.
 const ARROW: Rgb = [90, 110, 120];
 
-/// Ways to show.
+/// Routes to show.
 pub struct Paths {
     /// The name of the destination.
     pub name: String,
-    /// The ways.
-    pub ways: Arc<Ways>,
+    /// The routes.
+    pub routes: Arc<Routes>,
     /// The destination, to which they have a path map.
     pub to: Destination,
     /// The number of the place in the scene, if it is one.
@@ -39,7 +39,7 @@ pub struct Paths {
     pub is_known: bool,
 }
 
-/// The marks of some ways.
+/// The marks of some routes.
 pub struct Drawn {
     pub title: String,
     pub field: Vec<Mark>,
@@ -55,7 +55,7 @@ pub fn bar(map: &ColorMap) -> ColorBar {
 impl Paths {
     pub(super) fn draw(&self, simulation: &Simulation, frame: &Frame) -> Drawn {
         let grid = Grid::over([frame.min, frame.max], frame.meters(CELL));
-        let field = WayField::new(&self.ways, self.to, grid);
+        let field = WayField::new(&self.routes, self.to, grid);
         let bands = field.bands();
         let map = ColorMap::pale([0.0, bands.end() as f32], bands.count);
         let size = Vector::new(grid.columns as f64, grid.rows as f64) * grid.cell;
@@ -72,14 +72,14 @@ impl Paths {
         let numbers = field.corners();
         let places = numbers
             .iter()
-            .map(|&c| self.ways.floor.corners[c as usize].place);
+            .map(|&c| self.routes.floor.corners[c as usize].place);
         let corners = Mark::dots(places.map(xy), Style::full(BORDER, 1.7, ""));
         let mut lines = self.arrows(frame);
         let starts = self.starts(simulation);
         let has_rooms = simulation.scene().rooms().is_some() && self.is_known;
         let course = |start: Vector| match has_rooms {
             true => simulation.course(start, self.to),
-            false => self.ways.course(start, self.to),
+            false => self.routes.course(start, self.to),
         };
         let drawn = starts.iter();
         lines.extend(drawn.flat_map(|&start| way(start, course(start), frame)));
@@ -90,7 +90,7 @@ impl Paths {
             false => "",
         };
         Drawn {
-            title: format!("Ways{by} to {}", self.name),
+            title: format!("Routes{by} to {}", self.name),
             field: vec![cells(field.lengths, map.clone()), borders],
             lines,
             bar: bar(&map),
@@ -121,7 +121,7 @@ impl Paths {
         if from.is_empty() {
             from.extend(entries.chain(scene.entrances.iter().flat_map(|entrance| entrance.line)));
         }
-        from.retain(|&p| self.ways.is_open(p, self.to));
+        from.retain(|&p| self.routes.is_open(p, self.to));
         far_apart(&from)
     }
 
@@ -129,10 +129,10 @@ impl Paths {
     fn arrows(&self, frame: &Frame) -> Vec<Mark> {
         let grid = Grid::over([frame.min, frame.max], frame.meters(ARROWS));
         let centers = (0..grid.len()).map(|k| grid.center(k));
-        let on_floor = centers.filter(|&p| self.ways.floor.locate(p).is_some());
+        let on_floor = centers.filter(|&p| self.routes.floor.locate(p).is_some());
         let arrow = |p: Vector| {
-            let way = self.ways.open_way(p, self.to)?;
-            let next = way.next.place(&self.ways.floor);
+            let way = self.routes.open_way(p, self.to)?;
+            let next = way.next.place(&self.routes.floor);
             let reach = frame.meters(11.0);
             let along = direction(next - p) * reach.min((next - p).norm());
             let ends = [p, p + along];

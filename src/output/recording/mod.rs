@@ -13,11 +13,11 @@
 //! | `world/geometry/{sources,pushes,measured}` | outlines, static |
 //! | `world/legend/{density,speed}` | color bars, static |
 //! | `world/wall_forces` | walls colored by the force on them, if the run measures it |
-//! | `world/waits` | openings colored by the time that the last agent bound for them waits, if ways are chosen by time |
+//! | `world/waits` | openings colored by the time that the last agent bound for them waits, if routes are chosen by time |
 //! | `world/leans` | lines from the legs of people to their bodies, colored by the lean, if a profile has legs |
-//! | `world/ways/…` | the lengths of the ways to each place and goal as an image, hidden at first |
+//! | `world/routes/…` | the lengths of the routes to each place and goal as an image, hidden at first |
 //! | `world/agents` | the crowd: positions, radii, density and speed colors, `agent:…` values |
-//! | `world/debug/…` | the debug agents: kernels, hidden regions, wall points, forces, ways |
+//! | `world/debug/…` | the debug agents: kernels, hidden regions, wall points, forces, routes |
 //! | `focus/ID/…` | a followed agent in its own frame, with its forces as arrows and as time series |
 //! | `stats/…` | time series; those of places are in `stats/places` |
 //! | `info/scenario` | the scenario and a legend, as text |
@@ -65,7 +65,7 @@ use engine::simulation::Simulation;
 use frame::colored_lines::{self, ColoredLines, LEANS, WAITS, WALL_FORCES};
 use frame::{Snapshot, stats};
 use layout::{Content, Kind};
-use scene::{obstacles, ways};
+use scene::{obstacles, routes};
 use session::{Debug, Session};
 use stream::Output;
 
@@ -132,7 +132,7 @@ impl Recorder {
             has_journeys: !scene.journeys.places.is_empty(),
             has_stages: scenery::has_stages(scene),
             has_waiting: stats::has_waiting(scene),
-            fields: ways::entities(scene),
+            fields: routes::entities(scene),
             lines: lines.clone(),
             followed: names.clone(),
             ..Content::new(kind, obstacles::has_outside(scene.walls.obstacles()))

@@ -124,8 +124,8 @@ pub fn of_run(
             0.5 * WALL_FORCE_RANGE,
         );
     }
-    if scene.ways.is_some() {
-        rest += "* Lengths of ways (`world/ways`), hidden at first: click the eye beside a place in the list of \
+    if scene.routes.is_some() {
+        rest += "* Lengths of routes (`world/routes`), hidden at first: click the eye beside a place in the list of \
                  the view's entities.\n";
     }
     if options.debug != DebugAgents::None {
@@ -147,7 +147,7 @@ fn on_debug_agents(debug: &DebugAgents, scene: &Scene) -> String {
         _ => "the densest of these agents at the moment that the recording opens at is followed",
     };
     let mut text = format!(
-        "* Agents laid open (`world/debug`): circle = kernel of radius h; tinted outline = hidden \
+        "* Agents inspected (`world/debug`): circle = kernel of radius h; tinted outline = hidden \
          region P_k behind a wall; dots at walls = nearest point r*, between = representative point \
          r°; yellow line = way; green lines (followed agents with the walking law `headings`) = headings, as long as \
          the agent can walk there in 1 s, the followed one bright.\n\

@@ -103,11 +103,11 @@ pub struct File {
     #[serde(default)]
     #[schemars(range(min = 0, max = 1))]
     pub motivation: f64,
-    /// How agents find their ways: `paths` around walls, or `straight` toward the goal, as in the paper, where agents
+    /// How agents find their routes: `paths` around walls, or `straight` toward the goal, as in the paper, where agents
     /// stop at walls. Without walls between, both are the same to the last bit.
     #[schemars(schema_with = "word::<WayFinding>")]
     pub navigation: WayFinding,
-    /// By what agents choose ways around walls: `shortest`, or `quickest`, the least expected time, with the people
+    /// By what agents choose routes around walls: `shortest`, or `quickest`, the least expected time, with the people
     /// who wait before doors, in aisles and in other openings of up to 6 m.
     #[schemars(schema_with = "optional_word::<RouteChoice>", extend("default" = RouteChoice::default()))]
     pub route_choice: Option<RouteChoice>,
@@ -140,7 +140,7 @@ pub struct File {
     pub exits: Vec<Exit>,
     /// Doors between rooms that people pass in one direction only, or that close for some time.
     pub doors: Vec<Door>,
-    /// Lines and disks on people's ways.
+    /// Lines and disks on people's routes.
     pub waypoints: Vec<Waypoint>,
     /// Areas in which people wait.
     pub waiting_areas: Vec<WaitingArea>,

@@ -104,11 +104,11 @@ pub fn resolved(schema: &'static Value) -> &'static Value {
 }
 
 /// The alternatives of a schema that has some, without `null`.
-pub fn ways(schema: &'static Value) -> Option<impl Iterator<Item = &'static Value>> {
+pub fn routes(schema: &'static Value) -> Option<impl Iterator<Item = &'static Value>> {
     let mut keys = ["anyOf", "oneOf"].into_iter();
-    let ways = keys.find_map(|key| schema[key].as_array())?;
-    let only_ways = schema.get("type").is_none(); // else they are conditions on its object
-    only_ways.then(|| ways.iter().filter(|way| way["type"] != "null"))
+    let routes = keys.find_map(|key| schema[key].as_array())?;
+    let only_routes = schema.get("type").is_none(); // else they are conditions on its object
+    only_routes.then(|| routes.iter().filter(|way| way["type"] != "null"))
 }
 
 /// Whether the schema allows this JSON type.

@@ -1,4 +1,4 @@
-//! The keys of goals, and of how agents find their ways.
+//! The keys of goals, and of how agents find their routes.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -34,7 +34,7 @@ pub struct Heading {
     pub direction: [f64; 2],
 }
 
-/// How agents find their ways.
+/// How agents find their routes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WayFinding {

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use serde::{Deserialize, Serialize};
 
 use engine::math::Vector;
-use engine::ways::Destination;
+use engine::routes::Destination;
 
 /// What an agent walks to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -19,7 +19,7 @@ pub(super) enum Aim {
 }
 
 impl Aim {
-    /// Where ways lead to it; `None` if it is a direction.
+    /// Where routes lead to it; `None` if it is a direction.
     pub(super) fn destination(self) -> Option<Destination> {
         match self {
             Self::Goal(goal) => Some(Destination::Goal(goal)),

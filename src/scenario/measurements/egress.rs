@@ -9,8 +9,8 @@ use super::{About, Measure, Observed, Quantity};
 use engine::clock::Clock;
 use engine::journeys::{Kind, Status};
 use engine::math::Vector;
+use engine::routes::{Destination, Goal, PathMap};
 use engine::simulation::Simulation;
-use engine::ways::{Destination, Goal, PathMap};
 
 /// Of the people on one journey, or on all journeys: how many have left at an exit, the mean time from entry to exit,
 /// the times by which 50 %, 95 % and all have left, the mean wait in queues and waiting areas, that in waiting areas
@@ -94,7 +94,7 @@ struct Walker {
     place: u16,
     /// Where the stage began, meters.
     from: Vector,
-    /// The length of the shortest ways of the stages before, meters.
+    /// The length of the shortest routes of the stages before, meters.
     length: f64,
     /// The frame since which it waits in a waiting area.
     waits_since: Option<u64>,
@@ -150,18 +150,20 @@ impl Seen {
     /// does not count.
     fn length(&mut self, simulation: &Simulation, number: u16, [from, end]: [Vector; 2]) -> f64 {
         let scene = simulation.scene();
-        let Some(ways) = &scene.ways else {
+        let Some(routes) = &scene.routes else {
             return 0.0;
         };
         let (way, rest) = match &scene.journeys.places[usize::from(number)].kind {
             Kind::Queue(queue) => {
                 let front = queue.path[0];
-                let new = || PathMap::new(&ways.floor, &[Goal::Point(front)], 0.0).ok();
+                let new = || PathMap::new(&routes.floor, &[Goal::Point(front)], 0.0).ok();
                 let map = self.fronts.entry(number).or_insert_with(new);
-                let way = map.as_ref().and_then(|map| map.way_from(&ways.floor, from));
+                let way = map
+                    .as_ref()
+                    .and_then(|map| map.way_from(&routes.floor, from));
                 (way, (front - end).norm())
             }
-            _ => (ways.way(from, Destination::Place(number)), 0.0),
+            _ => (routes.way(from, Destination::Place(number)), 0.0),
         };
         way.map_or(0.0, |way| (way.length - rest).max(0.0))
     }
@@ -204,7 +206,7 @@ impl Measure for Egress {
             (
                 "delay_secs",
                 "s",
-                "mean of time to leave − pre-movement time − time in waiting areas − length of the shortest ways / \
+                "mean of time to leave − pre-movement time − time in waiting areas − length of the shortest routes / \
                  preferred speed",
             ),
             ("longest_delay_secs", "s", "the largest of these delays"),

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::standing::{EVERY, is_slow, length};
 use engine::journeys::{Queue, Status};
 use engine::math::Vector;
+use engine::routes::nearest_on;
 use engine::simulation::Simulation;
-use engine::ways::nearest_on;
 
 /// Agents that entered less than this ago have just started, seconds.
 const STARTING: f64 = 3.0;

@@ -67,9 +67,9 @@ impl Metrics {
     }
 
     /// The longest queue before each passage, the longest one first: before exits, waypoints, waiting areas and goals,
-    /// declared doors, and openings of the floor. In a queue are the agents whose ways lead through the passage and
+    /// declared doors, and openings of the floor. In a queue are the agents whose routes lead through the passage and
     /// that are slower than [`SLOW`](super::SLOW) times their preferred speed, from the passage up to the first
-    /// [`GAP`](super::GAP) along their ways; at a place with a queue of its own, the agents in it. Observed every
+    /// [`GAP`](super::GAP) along their routes; at a place with a queue of its own, the agents in it. Observed every
     /// second.
     pub fn longest_queues(&self, simulation: &Simulation) -> Vec<LongestQueue> {
         self.overview.longest(simulation)

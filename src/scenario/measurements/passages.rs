@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use super::aim::Aim;
 use engine::journeys::Kind;
 use engine::math::Vector;
+use engine::routes::{Destination, MapKey, Narrowings, Routes, WIDEST};
 use engine::scene::Scene;
 use engine::simulation::Simulation;
-use engine::ways::{Destination, MapKey, Narrowings, WIDEST, Ways};
 
 /// A way through an opening goes on this far behind it, meters.
 const BEYOND: f64 = 1e-3;
@@ -24,18 +24,18 @@ pub(super) struct Openings {
     doors: Vec<u16>,
 }
 
-/// The openings on ways that are known from a corner on: by what the ways lead to, and the first two of their points.
+/// The openings on routes that are known from a corner on: by what the routes lead to, and the first two of their points.
 pub(super) type Known = BTreeMap<(u16, [u64; 4]), Vec<Crossing>>;
 
 impl Openings {
-    /// Those of a scene with ways: its declared doors, and its narrow places.
+    /// Those of a scene with routes: its declared doors, and its narrow places.
     pub(super) fn of(scene: &Scene) -> Self {
-        let Some(ways) = &scene.ways else {
+        let Some(routes) = &scene.routes else {
             return Self::default();
         };
         let doors = Self::doors(scene);
         Self {
-            all: doors.all.and_openings(&ways.floor.mesh, WIDEST),
+            all: doors.all.and_openings(&routes.floor.mesh, WIDEST),
             doors: doors.doors,
         }
     }
@@ -61,15 +61,15 @@ impl Openings {
         simulation: &Simulation,
         (i, aim): (usize, Aim),
     ) -> Vec<(u16, Vector)> {
-        let ways = simulation.scene().ways.as_ref();
-        let Some((ways, to)) = ways
+        let routes = simulation.scene().routes.as_ref();
+        let Some((routes, to)) = routes
             .zip(aim.destination())
             .filter(|_| !self.doors.is_empty())
         else {
             return Vec::new();
         };
         let start = [simulation.frame().agents.position[i]];
-        let points = start.into_iter().chain(course(simulation, ways, (i, to)));
+        let points = start.into_iter().chain(course(simulation, routes, (i, to)));
         let course: Vec<Vector> = points.collect();
         let crossed = course.windows(2).flat_map(|pair| {
             let mut crossed = self.all.crossed(pair[0], pair[1]);
@@ -99,14 +99,14 @@ impl Openings {
         known: &mut Known,
     ) -> Option<(Vec<Crossing>, f64)> {
         let p = simulation.frame().agents.position[i];
-        let ways = simulation.scene().ways.as_ref()?;
+        let routes = simulation.scene().routes.as_ref()?;
         let to = aim.destination()?;
-        let course = course(simulation, ways, (i, to));
+        let course = course(simulation, routes, (i, to));
         let &first = course.first()?;
         let mut found = self.all.crossed(p, first);
         let distance = (first - p).norm();
         let length = distance + self::length(&course);
-        if let (Some(second), Some(map)) = (course.get(1), ways.map_to(to)) {
+        if let (Some(second), Some(map)) = (course.get(1), routes.map_to(to)) {
             let bits = [first.x, first.y, second.x, second.y].map(f64::to_bits);
             let entry = known.entry((map, bits));
             let rest = entry.or_insert_with(|| self.along(&course));
@@ -137,11 +137,11 @@ impl Openings {
 
 /// The points of the way of agent `i`, meters: of the way through another opening than that of the shortest one, if it
 /// has chosen that.
-fn course(simulation: &Simulation, ways: &Ways, (i, to): (usize, Destination)) -> Vec<Vector> {
+fn course(simulation: &Simulation, routes: &Routes, (i, to): (usize, Destination)) -> Vec<Vector> {
     let agents = simulation.frame().agents;
     let p = agents.position[i];
     let plan = agents.plan.get(i).and_then(Option::as_ref);
-    let detour = plan.and_then(|plan| match plan.detour(ways, to)? {
+    let detour = plan.and_then(|plan| match plan.detour(routes, to)? {
         MapKey::Opening(side) => Some((plan, side)),
         MapKey::Floor(_) | MapKey::Room(_) => None,
     });
@@ -149,15 +149,15 @@ fn course(simulation: &Simulation, ways: &Ways, (i, to): (usize, Destination)) -
         if simulation.progress().places.iter().any(|place| !place.open) {
             return simulation.way_through(i, plan.goal, side);
         }
-        let rooms = ways.rooms()?;
+        let rooms = routes.rooms()?;
         let here = plan.located.triangle_at(rooms, p)?;
         let mut course = rooms.course((p, here), usize::from(plan.goal), Some(side));
         let behind = course.last()? + rooms.ahead(side) * BEYOND;
         course.push(behind);
-        course.extend(ways.course(behind, to));
+        course.extend(routes.course(behind, to));
         Some(course)
     });
-    through.unwrap_or_else(|| ways.course(p, to))
+    through.unwrap_or_else(|| routes.course(p, to))
 }
 
 fn length(course: &[Vector]) -> f64 {

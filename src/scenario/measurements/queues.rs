@@ -1,8 +1,8 @@
 //! People who wait for a passage.
 //!
 //! A passage is an exit, a waypoint or waiting area that people walk to, a declared door, or an opening of the floor.
-//! In the queue before it are the people whose ways lead through it and who are slow, in the order of their distances
-//! along their ways, from the passage up to the first gap.
+//! In the queue before it are the people whose routes lead through it and who are slow, in the order of their distances
+//! along their routes, from the passage up to the first gap.
 
 use std::collections::BTreeMap;
 
@@ -104,7 +104,7 @@ struct Slow {
     length: f64,
 }
 
-/// The slow agents on ways through a passage, each with its distance, meters.
+/// The slow agents on routes through a passage, each with its distance, meters.
 struct Waiting {
     passage: Passage,
     agents: Vec<(f64, usize)>,
@@ -270,7 +270,7 @@ impl Waiting {
         };
         let (agents, scene) = (simulation.frame().agents, simulation.scene());
         let group = usize::from(agents.group[slow[front].agent]);
-        let start = match (self.passage, &scene.ways) {
+        let start = match (self.passage, &scene.routes) {
             // Without a floor, no openings before the goal are known.
             (Passage::Aim(Aim::Goal(_)), None) => first,
             (Passage::Aim(Aim::Goal(_)), Some(_)) => {

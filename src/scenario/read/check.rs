@@ -23,8 +23,8 @@ use crate::scene::origin::Items;
 use crate::scene::people::Population;
 use crate::scene::surroundings::Surroundings;
 use crate::scene::{
-    doubts, journeys, numerics, off_floor, overcrowded, periodic, profiles, slits, surroundings,
-    view, ways, widest,
+    doubts, journeys, numerics, off_floor, overcrowded, periodic, profiles, routes, slits,
+    surroundings, view, widest,
 };
 use crate::trajectories::Tracks;
 use crate::{file, measurements};
@@ -162,7 +162,7 @@ impl Draft {
         })
     }
 
-    /// Adds the places, the people and their ways to a scene, and checks that all lie on the floor.
+    /// Adds the places, the people and their routes to a scene, and checks that all lie on the floor.
     fn populate(
         &self,
         scene: &mut Scene,
@@ -186,7 +186,7 @@ impl Draft {
             choice: keys.route_choice.unwrap_or_default(),
             knowledge: keys.knowledge,
         };
-        ways::add((keys, &items), scene, behind, notes)?;
+        routes::add((keys, &items), scene, behind, notes)?;
         Ok(items)
     }
 }

@@ -150,9 +150,9 @@ pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
                 let numbers = stages.iter().flat_map(|stage| &stage.places);
                 let places = numbers.map(|&place| &scene.journeys.places[usize::from(place)]);
                 let exits = places.filter(|place| place.is_exit());
-                let ways =
+                let routes =
                     exits.map(|exit| (exit.nearest_point(agent.position) - agent.position).norm());
-                ways.reduce(f64::min)?
+                routes.reduce(f64::min)?
             }
             None => (agent.goal - agent.position).norm() - group.removal_radius?,
         };

@@ -15,10 +15,10 @@ use crate::read::draft::Draft;
 use crate::read::plans::PlanFile;
 use crate::read::setting::Setting;
 use crate::read::shipped::SHIPPED;
+use crate::scene::routes;
 use crate::scene::view::View;
-use crate::scene::ways;
+use engine::routes::Routes;
 use engine::scene::Scene;
-use engine::ways::Ways;
 
 /// A checked scenario: what to simulate, for how long, and what to measure and show.
 #[derive(Debug, Clone)]
@@ -55,7 +55,7 @@ pub struct Scenario {
     pub changes: Vec<String>,
     /// What was changed to make it run, for readers of its results.
     pub notes: Vec<String>,
-    /// Agents find ways through passages of at least this width, meters; `None`: they walk straight.
+    /// Agents find routes through passages of at least this width, meters; `None`: they walk straight.
     pub passage_width: Option<f64>,
 }
 
@@ -76,9 +76,9 @@ impl Scenario {
     ///
     /// # Errors
     /// The walls cross, or lie too far away.
-    pub fn floor(&self) -> Result<Option<Ways>, ScenarioError> {
+    pub fn floor(&self) -> Result<Option<Routes>, ScenarioError> {
         let width = self.passage_width.filter(|_| !self.scene.walls.is_empty());
-        let floor = width.map(|width| ways::floor(&self.scene, width));
+        let floor = width.map(|width| routes::floor(&self.scene, width));
         floor.transpose().map_err(|problem| ScenarioError::Invalid {
             file: self.name.clone(),
             problem,

@@ -1,4 +1,4 @@
-//! The bodies of a scene and the passages on their ways: which they pass, and which only with turned shoulders.
+//! The bodies of a scene and the passages on their routes: which they pass, and which only with turned shoulders.
 
 use std::collections::BTreeMap;
 
@@ -7,12 +7,12 @@ use crate::error::quote::{shown, to_centimeters};
 use crate::scene::maps::{Leg, Maps, described};
 use crate::scene::origin::Member;
 use crate::scene::reach::Stops;
-use crate::scene::ways::{Prepared, To};
+use crate::scene::routes::{Prepared, To};
 use crate::scene::widest::SIDEWAYS;
-use engine::ways::{Destination, Floor};
+use engine::routes::{Destination, Floor};
 
 impl Prepared<'_> {
-    /// Checks that the widest body of each group passes all passages on the widest of its ways. Adds notes on those
+    /// Checks that the widest body of each group passes all passages on the widest of its routes. Adds notes on those
     /// that it passes with turned shoulders only, or in which it can stick.
     ///
     /// `stops` are the points where people go on to the next stage.
@@ -70,7 +70,7 @@ impl Prepared<'_> {
         }
     }
 
-    /// For each of the widest bodies, the leg of its ways with the narrowest passage.
+    /// For each of the widest bodies, the leg of its routes with the narrowest passage.
     fn narrowest_legs(&self, floor: &Floor, stops: &Stops) -> Vec<Option<Leg>> {
         let mut maps = Maps::new(floor, self.places);
         let key = |member: Member| (member.group, self.origins.single(member));

@@ -10,7 +10,7 @@ use crate::scene::places::SHORTEST_LINE;
 use engine::geometry::{Ring, Walls};
 use engine::journeys::{Kind, Place};
 use engine::math::{Vector, direction, perpendicular};
-use engine::ways::{Floor, nearest_on};
+use engine::routes::{Floor, nearest_on};
 
 /// The distance between the points of a line that are looked at, meters.
 const STEP: f64 = 0.01;

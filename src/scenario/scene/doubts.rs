@@ -18,8 +18,8 @@ use engine::forces::legs::Legs;
 use engine::geometry::Walls;
 use engine::journeys::{Change, ChangeKind, Choice, Kind, Place, Zone};
 use engine::math::{Vector, bounds};
+use engine::routes::nearest_on;
 use engine::scene::{Group, Scene};
-use engine::ways::nearest_on;
 
 /// Floors with a longer side are doubtful, meters.
 const LONG: f64 = 300.0;
@@ -40,7 +40,7 @@ const NAMED: usize = 3;
 
 /// Groups of which this share walks are walking groups.
 const SOME: f64 = 0.05;
-/// From this number of agents on, a note says how they choose their ways.
+/// From this number of agents on, a note says how they choose their routes.
 const CROWD: u64 = 100;
 
 /// The notes on a complete scene that at most `entering` agents enter, whose file has its end at `last`, seconds.
@@ -94,7 +94,7 @@ fn crowded(keys: &File, scene: &Scene, entering: u64) -> Option<String> {
         let mut stages = leaving::stages(scene, group);
         stages.any(|stage| stage.choice == Choice::Quickest)
     });
-    let has_choice = !looks && scene.ways.is_some() && (rings.count() > 1 || exits);
+    let has_choice = !looks && scene.routes.is_some() && (rings.count() > 1 || exits);
     (is_open && has_choice && entering >= CROWD).then(|| {
         "all agents take the shortest way, however many wait there; with `route_choice` `quickest` they take the way \
          of the least time (`shortest` in the file hides this note)"
@@ -157,7 +157,7 @@ fn on_legs(keys: &File, scene: &Scene) -> Option<String> {
         Some(&scene.groups[usize::from(walker.group)])
     })?;
     Some(format!(
-        "{}: people on legs walk to a goal (profile `{}`); legs are a law of crowds that stand and sway, not of walks \
+        "{}: people with legs walk to a goal (profile `{}`); legs are a law of crowds that stand and sway, not of walks \
          and evacuations",
         shown(&group.name),
         shown(&group.blend.name)

@@ -5,23 +5,25 @@ use std::collections::BTreeSet;
 use crate::error::quote::shown;
 use engine::journeys::{JourneyStage, Place};
 use engine::math::Vector;
+use engine::routes::{Destination, Routes};
 use engine::scene::Scene;
-use engine::ways::{Destination, Ways};
 
-/// The ways of this many people of a journey are looked at.
+/// The routes of this many people of a journey are looked at.
 const LOOKED_AT: usize = 30;
 
 /// A note for each exit that the first stage of a journey offers, if the way of every person to it crosses the line of
 /// another exit of the stage: people leave there.
 pub fn notes(scene: &Scene) -> Vec<String> {
-    let Some(ways) = &scene.ways else {
+    let Some(routes) = &scene.routes else {
         return Vec::new();
     };
     let used: BTreeSet<u16> = scene.groups.iter().filter_map(|one| one.journey).collect();
     let of_journeys = used.into_iter().flat_map(|journey| {
         let starts = starts(scene, journey);
         let stage = scene.journeys.journeys[usize::from(journey)].stages.first();
-        stage.map_or(Vec::new(), |stage| of_stage(scene, (ways, stage), &starts))
+        stage.map_or(Vec::new(), |stage| {
+            of_stage(scene, (routes, stage), &starts)
+        })
     });
     let notes: BTreeSet<String> = of_journeys.collect();
     notes.into_iter().collect()
@@ -41,7 +43,7 @@ fn starts(scene: &Scene, journey: u16) -> Vec<Vector> {
 
 fn of_stage(
     scene: &Scene,
-    (ways, stage): (&Ways, &JourneyStage),
+    (routes, stage): (&Routes, &JourneyStage),
     starts: &[Vector],
 ) -> Vec<String> {
     let place = |number: u16| &scene.journeys.places[usize::from(number)];
@@ -51,7 +53,7 @@ fn of_stage(
         let line = place(other).line();
         let crossed = |start: &Vector| {
             let mut points = vec![*start];
-            points.extend(ways.course(*start, Destination::Place(to)));
+            points.extend(routes.course(*start, Destination::Place(to)));
             let mut legs = points.windows(2);
             points.len() > 1
                 && legs.any(|leg| line.is_some_and(|line| meet([leg[0], leg[1]], line)))

@@ -1,11 +1,11 @@
-//! The passages on the ways of agents.
+//! The passages on the routes of agents.
 
 use std::collections::BTreeMap;
 
 use crate::error::quote::to_centimeters;
 use engine::journeys::{Choice, Exit, JourneyStage, Kind, Place};
 use engine::math::{Vector, direction, perpendicular};
-use engine::ways::{Destination, Floor, Goal, Passage, Passages};
+use engine::routes::{Destination, Floor, Goal, Passage, Passages};
 
 /// The distance between the points of a line that stand for it, meters.
 const STEP: f64 = 0.1;
@@ -14,7 +14,7 @@ const MOST_STEPS: f64 = 200.0;
 /// Behind an exit is what lies this far from its line, meters.
 const BESIDE: f64 = 0.05;
 
-/// A part of the ways of a group.
+/// A part of the routes of a group.
 #[derive(Clone, Copy)]
 pub struct Leg {
     pub from: Vector,
@@ -23,7 +23,7 @@ pub struct Leg {
     pub passage: Passage,
 }
 
-/// The passages on the ways to places and goals, found when they are needed.
+/// The passages on the routes to places and goals, found when they are needed.
 pub struct Maps<'a> {
     floor: &'a Floor,
     places: &'a [Place],

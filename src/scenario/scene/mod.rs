@@ -1,4 +1,4 @@
-//! The keys of a file → a scene: walls, places, ways and people, and what is refused or noted on the way.
+//! The keys of a file → a scene: walls, places, routes and people, and what is refused or noted on the way.
 
 pub mod bodies;
 pub mod changes;
@@ -27,6 +27,7 @@ pub mod places;
 pub mod profiles;
 pub mod reach;
 pub mod reached;
+pub mod routes;
 pub mod slits;
 pub mod spots;
 pub mod surroundings;
@@ -36,5 +37,4 @@ pub mod units;
 pub mod view;
 pub mod waiting;
 pub mod wall_lists;
-pub mod ways;
 pub mod widest;

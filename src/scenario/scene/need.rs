@@ -49,7 +49,7 @@ pub struct Need {
     /// Entries in the lists of walls near agents; 0 until [`with_lists`](Self::with_lists) sets it.
     pub listed: u64,
     /// Bytes of path maps; 0 until [`with_lists`](Self::with_lists) sets it.
-    pub ways: u64,
+    pub routes: u64,
 }
 
 impl Need {
@@ -63,7 +63,7 @@ impl Need {
             (self.walls, WALL),
             (self.text, TEXT),
             (self.listed, LISTED),
-            (self.ways, 1),
+            (self.routes, 1),
         ];
         let products = parts.map(|(count, bytes)| count.saturating_mul(bytes));
         products.into_iter().fold(PROGRAM, u64::saturating_add)
@@ -73,7 +73,10 @@ impl Need {
     pub fn with_lists(self, scene: &Scene) -> Self {
         Self {
             listed: wall_lists::entries(scene, self.entering),
-            ways: scene.ways.as_ref().map_or(0, |ways| ways.bytes() as u64),
+            routes: scene
+                .routes
+                .as_ref()
+                .map_or(0, |routes| routes.bytes() as u64),
             ..self
         }
     }

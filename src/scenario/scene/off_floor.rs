@@ -10,8 +10,8 @@ use crate::scene::origin::{Member, Origins};
 use engine::geometry::Ring;
 use engine::journeys::{Kind, Place};
 use engine::math::Vector;
+use engine::routes::nearest_on;
 use engine::scene::Scene;
-use engine::ways::nearest_on;
 
 /// The reason why an area or a line is refused.
 pub const OFF: &str = "lies in obstacles or outside of the walkable area; move it onto the floor";

@@ -5,11 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::error::Problem;
 use crate::error::quote::{shown, to_centimeters};
 use crate::scene::maps::{Maps, described};
+use crate::scene::routes::{Prepared, To};
 use crate::scene::slits;
-use crate::scene::ways::{Prepared, To};
 use engine::journeys::{Choice, JourneyStage};
 use engine::math::{Vector, direction, perpendicular};
-use engine::ways::{Destination, Floor, Regions, Ways};
+use engine::routes::{Destination, Floor, Regions, Routes};
 
 /// Points from which people go on to the next stage: of each journey, stage and place that they reach.
 pub type Stops = BTreeMap<(u16, usize, u16), Vec<Vector>>;
@@ -48,8 +48,8 @@ struct Journeying<'a> {
 }
 
 impl<'a> Journeying<'a> {
-    fn new(prepared: &'a Prepared<'a>, ways: &'a Ways) -> Self {
-        let regions = Regions::of(ways);
+    fn new(prepared: &'a Prepared<'a>, routes: &'a Routes) -> Self {
+        let regions = Regions::of(routes);
         let places = prepared.places.iter().zip(prepared.reached);
         let stands = places.map(|(place, reached)| {
             let mut stands: Vec<Stand> = Vec::new();
@@ -167,13 +167,13 @@ impl<'a> Journeying<'a> {
 
 impl Prepared<'_> {
     /// Checks that all agents can reach their goals.
-    pub fn check_goals(&self, ways: &Ways) -> Result<(), Problem> {
+    pub fn check_goals(&self, routes: &Routes) -> Result<(), Problem> {
         for start in self.starts {
             let To::Goal { goal } = start.to else {
                 continue;
             };
             let to = Destination::Goal(goal);
-            if self.goals.contains(&goal) && !ways.is_open(start.place, to) {
+            if self.goals.contains(&goal) && !routes.is_open(start.place, to) {
                 let reason = format!(
                     "no way leads from ({}, {}), where {}, to the goal ({}, {}): {}; or set \
                      `navigation` to `straight`",
@@ -193,8 +193,12 @@ impl Prepared<'_> {
     /// Checks that all agents can reach the places of the first stage of their journey, and from the parts that
     /// they reach those of the next stages. Adds notes about the places that no agent can choose. Returns where people
     /// go on to the next stages.
-    pub fn check_journeys(&self, ways: &Ways, notes: &mut Vec<String>) -> Result<Stops, Problem> {
-        let mut journeying = Journeying::new(self, ways);
+    pub fn check_journeys(
+        &self,
+        routes: &Routes,
+        notes: &mut Vec<String>,
+    ) -> Result<Stops, Problem> {
+        let mut journeying = Journeying::new(self, routes);
         let mut known = BTreeSet::new();
         for start in self.starts {
             let To::Journey(journey) = start.to else {
@@ -224,7 +228,7 @@ impl Prepared<'_> {
         Ok(journeying.stops)
     }
 
-    /// What says that all ways are too narrow, and what to do.
+    /// What says that all routes are too narrow, and what to do.
     fn why_narrow(&self, floor: &Floor, from: Vector, to: Destination) -> String {
         let passage = Maps::new(floor, self.places).passage(from, to);
         let widest = passage.map_or(String::new(), |passage| {
@@ -252,11 +256,11 @@ impl Prepared<'_> {
 
     /// Why no way leads to a destination, and what to do.
     fn why_closed(&self, from: Vector, to: Destination) -> Result<String, Problem> {
-        if self.ways(self.width)?.is_open(from, to) {
+        if self.routes(self.width)?.is_open(from, to) {
             let why = "one-way doors on every way lead only away from it; turn one of them, or open another way";
             return Ok(why.to_owned());
         }
-        let open = self.ways(0.0)?;
+        let open = self.routes(0.0)?;
         Ok(match open.is_open(from, to) {
             true => self.why_narrow(&self.floor(self.width)?, from, to),
             false => match slits::apart(&self.scene.walls) {

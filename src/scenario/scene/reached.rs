@@ -7,13 +7,13 @@ use crate::scene::widest::{SIDEWAYS, Widest, passable};
 use engine::geometry::{LineAmongWalls, Walls};
 use engine::journeys::{Kind, Place};
 use engine::math::Vector;
-use engine::ways::Goal;
+use engine::routes::Goal;
 
 /// What people can reach of a place.
 pub struct Reached {
     /// The points and lines to which they walk.
     pub goals: Vec<Goal>,
-    /// Points on each part, of which ways lead from all or none.
+    /// Points on each part, of which routes lead from all or none.
     pub stands: Vec<Vector>,
     /// Whether they can reach some of it.
     pub is_any: bool,

@@ -34,7 +34,7 @@ pub fn waiting_area(
     let share = part.exterior.area() / whole.area();
     let free = part.area() / whole.area();
     let note = (free < NEARLY_ALL).then(|| note(&given.name, parts.len(), free));
-    // Ways lead to an area as it is drawn if hardly anything stands in its sides, and nothing at its corners.
+    // Routes lead to an area as it is drawn if hardly anything stands in its sides, and nothing at its corners.
     let mut corners = whole.points().iter();
     let is_clear = share >= NEARLY_ALL && corners.all(|&p| walls.obstacle_at(p).is_none());
     let is_whole = is_clear || share > 1.0 - ROUNDING;

@@ -85,7 +85,7 @@ impl WalkingLaw {
             .map(|law| law.sight(speed, law.gap.longest()))
     }
 
-    /// The law of headings, if it is this one.
+    /// The choice of headings, if it is this one.
     pub fn headings(&self) -> Option<&Headings> {
         match self {
             Self::Headings(law) => Some(law),

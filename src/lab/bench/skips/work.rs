@@ -14,8 +14,8 @@ use engine::geometry::{Area, Ring};
 use engine::math::{Vector, bounds};
 use engine::neighbors::{BLOCK, Lists, Neighbors, TASK};
 use engine::pairs::Packed;
+use engine::routes::{Floor, Route, Routes};
 use engine::simulation::{Simulation, StageTimes};
-use engine::ways::{Floor, Route, Ways};
 use scenario::measurements::{Integrity, Measure, Watched};
 
 /// Does the work for an evaluated frame, and returns the seconds that it took.
@@ -215,10 +215,10 @@ const MOST_GOALS: usize = 100;
 /// The floor reaches this far beyond agents and goals, meters.
 const AROUND: f64 = 5.0;
 
-/// Looking up ways on an open floor.
-pub fn ways(simulation: &Simulation) -> Result<Work, &'static str> {
+/// Looking up routes on an open floor.
+pub fn routes(simulation: &Simulation) -> Result<Work, &'static str> {
     let (agents, scene) = (simulation.frame().agents, simulation.scene());
-    if scene.ways.is_some() {
+    if scene.routes.is_some() {
         return Err("walls stand between agents and goals");
     }
     let mut goals: Vec<Vector> = Vec::new();
@@ -227,7 +227,7 @@ pub fn ways(simulation: &Simulation) -> Result<Work, &'static str> {
             goals.push(*goal);
         }
     }
-    let ways = open_floor(&agents.position, goals).ok_or("there is no floor")?;
+    let routes = open_floor(&agents.position, goals).ok_or("there is no floor")?;
     let seed = scene.seed;
     let mut held: Vec<(Option<Route>, Vector)> = Vec::new();
     Ok(Box::new(move |simulation| {
@@ -236,7 +236,7 @@ pub fn ways(simulation: &Simulation) -> Result<Work, &'static str> {
         held.resize(agents.entered() as usize, (None, Vector::zeros()));
         (agents.route, agents.aim) = agents.id.iter().map(|&id| held[id as usize]).unzip();
         agents.lacks_routes = agents.route.contains(&None);
-        let spent = seconds(|| agents.follow(&ways, frame.clock.is_coarse(), seed));
+        let spent = seconds(|| agents.follow(&routes, frame.clock.is_coarse(), seed));
         let routes = agents.route.into_iter().zip(agents.aim);
         for (&id, route) in agents.id.iter().zip(routes) {
             held[id as usize] = route;
@@ -246,7 +246,7 @@ pub fn ways(simulation: &Simulation) -> Result<Work, &'static str> {
 }
 
 /// Path maps to goals on a rectangle without walls inside.
-fn open_floor(positions: &[Vector], goals: Vec<Vector>) -> Option<Ways> {
+fn open_floor(positions: &[Vector], goals: Vec<Vector>) -> Option<Routes> {
     let [low, high] = bounds(positions.iter().chain(&goals).copied())?;
     let (low, high) = (low.add_scalar(-AROUND), high.add_scalar(AROUND));
     let corners = vec![
@@ -259,5 +259,5 @@ fn open_floor(positions: &[Vector], goals: Vec<Vector>) -> Option<Ways> {
         exterior: Ring::new(corners).ok()?,
         holes: Vec::new(),
     };
-    Ways::new(Floor::new(&[area], 0.0).ok()?, &[], goals).ok()
+    Routes::new(Floor::new(&[area], 0.0).ok()?, &[], goals).ok()
 }

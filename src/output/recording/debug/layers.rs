@@ -15,7 +15,7 @@ const MOST_LABELS: usize = 40;
 
 const WHITE: Rgb = [255; 3];
 
-/// The colors of ways, hidden regions, lines to walls, nearest and representative points.
+/// The colors of routes, hidden regions, lines to walls, nearest and representative points.
 pub const WAY: Rgb = [240, 200, 90];
 pub const HIDDEN: Rgb = [220, 120, 200];
 pub const LINK: Rgb = [190, 110, 110];
@@ -90,8 +90,8 @@ pub fn begin(
         );
         add(name, &style, Box::new(representative_points))?;
     }
-    if scene.ways.is_some() {
-        add("ways", &line_style(WAY, 1.0), Box::new(ways))?;
+    if scene.routes.is_some() {
+        add("routes", &line_style(WAY, 1.0), Box::new(routes))?;
     }
     for term in arrows::acting(scene) {
         let style = arrow_style(term.color.1, 1.2).with_draw_order(13.0);
@@ -148,13 +148,13 @@ fn hidden_regions(open: &[Open]) -> Data {
 }
 
 /// The rest of each agent's way, over its corners to its end.
-fn ways(open: &[Open]) -> Data {
-    let ways = open.iter().filter_map(|agent| {
+fn routes(open: &[Open]) -> Data {
+    let routes = open.iter().filter_map(|agent| {
         let aims = agent.breakdown.way.as_ref()?.corners.iter();
         let corners = aims.map(|&corner| xy(corner.into()));
         Some(std::iter::once(xy(agent.position)).chain(corners).collect())
     });
-    strips(ways)
+    strips(routes)
 }
 
 /// The positions of agents, each with its nearest point on a wall and its representative point there.

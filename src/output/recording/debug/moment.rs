@@ -30,7 +30,7 @@ fn markdown(of: &Breakdown) -> String {
     for (quantity, value) in state(of) {
         text += &format!("| {quantity} | {value} |\n");
     }
-    let way = of.way_and_visit();
+    let way = of.route_and_visit();
     if !way.is_empty() {
         text += "\n## Way\n\n";
         for line in way.lines() {

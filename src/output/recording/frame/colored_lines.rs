@@ -90,7 +90,7 @@ pub fn leans(simulation: &Simulation) -> Option<Vec<Part>> {
     Some(agents.present().filter_map(part).collect())
 }
 
-/// The openings before which agents wait; `None` if they do not choose ways by time.
+/// The openings before which agents wait; `None` if they do not choose quickest routes.
 pub fn waits(simulation: &Simulation) -> Option<Vec<Part>> {
     let rooms = simulation.scene().rooms()?;
     let all = rooms.openings().iter().zip(simulation.waits());

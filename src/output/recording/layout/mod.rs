@@ -60,7 +60,7 @@ pub struct Content {
     pub has_stages: bool,
     /// Whether there are queues or waiting areas.
     pub has_waiting: bool,
-    /// The entities with the lengths of ways, which are hidden at first.
+    /// The entities with the lengths of routes, which are hidden at first.
     pub fields: Vec<EntityPath>,
     /// The layers of colored lines.
     pub lines: Vec<&'static ColoredLines>,

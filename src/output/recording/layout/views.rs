@@ -33,13 +33,13 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// The crowd colored by density, with walls, places and ways.
+    /// The crowd colored by density, with walls, places and routes.
     pub fn of_crowd(name: &str, content: &'a Content) -> Self {
         let mut contents = vec![
             "+ /world/geometry/**".to_owned(),
             format!("+ /{}", crowd::ENTITY),
         ];
-        contents.extend((!content.fields.is_empty()).then(|| "+ /world/ways/**".to_owned()));
+        contents.extend((!content.fields.is_empty()).then(|| "+ /world/routes/**".to_owned()));
         let lines = content.lines.iter();
         contents.extend(lines.map(|of| format!("+ /{}", of.entity)));
         Self {

@@ -5,7 +5,7 @@ pub mod markers;
 pub mod names;
 pub mod obstacles;
 pub mod places;
-pub mod ways;
+pub mod routes;
 
 use rerun::{Points2D, RecordingStream};
 
@@ -38,7 +38,7 @@ pub fn log(
     log_walls(stream, scene.walls.obstacles())?;
     log_period(stream, scene, agents)?;
     log_goals(stream, (scene, agents), &mut names)?;
-    ways::log(stream, scene)?;
+    routes::log(stream, scene)?;
     markers::log(stream, scene, options, &mut names)?;
     names.log(stream)
 }

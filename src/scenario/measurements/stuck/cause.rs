@@ -9,8 +9,8 @@ use engine::agents::RADIUS_RANGE;
 use engine::geometry::Walls;
 use engine::journeys::{ChangeKind, Door, Kind};
 use engine::math::{Vector, direction, perpendicular};
+use engine::routes::side;
 use engine::simulation::Simulation;
-use engine::ways::side;
 
 /// Agents whose centers are this far ahead touch, or almost, as a multiple of the sum of the radii.
 const TOUCHING: f64 = 1.25;
@@ -56,7 +56,7 @@ fn likely(simulation: &Simulation, i: usize, aim: Aim, doors: &Openings) -> Stri
     let touching = blockers(simulation, i, TOUCHING, (aim, ahead));
     // Before a door, where agents still leave, others are the cause, not the wall beside the door.
     if let Aim::Goal(goal) = aim
-        && scene.ways.is_none()
+        && scene.routes.is_none()
         && is_between(walls, p, goal)
         && (touching.is_none() || leaving == 0)
     {

@@ -9,8 +9,8 @@ use super::passages::Openings;
 use super::{Measure, Observed, is_due};
 use engine::journeys::Status;
 use engine::math::Vector;
+use engine::routes::Destination;
 use engine::simulation::Simulation;
-use engine::ways::Destination;
 
 /// An agent is stuck if it has made no headway in this time of walking, seconds.
 pub const STUCK_AFTER: f64 = 20.0;
@@ -219,10 +219,10 @@ fn position(simulation: &Simulation, i: usize) -> Vector {
 
 /// How far it is from `p` to `aim`, meters; `None` without a way.
 fn left(simulation: &Simulation, p: Vector, aim: Aim) -> Option<f64> {
-    let ways = simulation.scene().ways.as_ref();
+    let routes = simulation.scene().routes.as_ref();
     let by_way = |to: Destination| {
-        let ways = ways.filter(|ways| ways.leads_to(to))?;
-        Some(ways.way(p, to).map(|way| way.length))
+        let routes = routes.filter(|routes| routes.leads_to(to))?;
+        Some(routes.way(p, to).map(|way| way.length))
     };
     let length = match aim {
         Aim::Goal(goal) => by_way(Destination::Goal(goal)).unwrap_or(Some((goal - p).norm())),

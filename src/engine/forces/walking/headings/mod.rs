@@ -1,4 +1,4 @@
-//! The law of headings: agents choose a direction near that of their way, by the room that each direction offers.
+//! The choice of headings: agents choose a direction near that of their way, by the room that each direction offers.
 //!
 //! M. Moussaïd, D. Helbing, G. Theraulaz, How simple rules determine pedestrian behavior and crowd disasters, PNAS 108
 //! (2011): people choose the direction that brings them nearest to their goal, given how far they can walk in each
@@ -44,7 +44,7 @@ pub const CHOICE_TIME: f64 = 0.2;
 /// The heading straight along the way.
 pub const STRAIGHT: usize = COUNT / 2;
 
-/// Parameters of the law of headings.
+/// Parameters of the choice of headings.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
 #[schemars(default)]
 pub struct Headings {
