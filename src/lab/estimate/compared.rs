@@ -177,7 +177,7 @@ fn paired(a: &Row, b: &Row, confidence: f64) -> Option<Reached> {
         Series { steps, values }.means(&Prior::NONE)
     });
     let (x, y, difference) = (x?, y?, difference?);
-    (difference.variance < x.variance + y.variance).then(|| difference.reached(confidence).0)
+    (difference.variance < x.variance + y.variance).then(|| difference.reached(confidence))
 }
 
 impl Compared {

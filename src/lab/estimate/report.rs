@@ -1,8 +1,7 @@
 //! The answer for readers and programs.
 
-use super::answer::{ABOUT, Answer, Row};
+use super::answer::{ABOUT, Answer, AtStep, Row};
 use super::bounds::Bounded;
-use super::costs::name as name_of;
 use super::pictures::{bound_sheet, curve_sheet, sheet};
 use super::run::Runs;
 use super::validated::Validated;
@@ -24,7 +23,7 @@ pub fn names(name: &str) -> Names {
 }
 
 /// A row at one of its steps.
-type Step<'a> = (&'a Row, &'a super::answer::AtStep);
+type Step<'a> = (&'a Row, &'a AtStep);
 
 impl Answer {
     /// Everything for readers and programs, with these pictures of the results, of their curves and of the bounds.
@@ -130,11 +129,11 @@ impl Answer {
     }
 
     fn bounds_table(&self) -> Table {
-        let side = |bound: &Bounded| if bound.is_upper() { "≤" } else { "≥" };
+        let side = |bound: &Bounded| if bound.bound.is_upper() { "≤" } else { "≥" };
         Table::of(&self.bounds)
-            .column("result", |bound| bound.name.as_str())
+            .column("result", |bound| bound.bound.name.as_str())
             .column("runs", |bound| {
-                let inner = round::brief(100.0 * bound.inner());
+                let inner = round::brief(100.0 * bound.bound.inner());
                 format!("{inner} % {}", side(bound))
             })
             .column("bound", |bound| {
@@ -183,20 +182,6 @@ impl Answer {
         for row in self.results.iter().filter(|row| row.reached.error > 0.0) {
             text += &row.at_default_step();
         }
-        let secs = |secs: Option<f64>| secs.map_or("none".to_owned(), round::brief);
-        let costs = self.costs.iter();
-        let costs =
-            costs.map(|cost| format!("{} {}", name_of(cost.timed.preset), secs(cost.all_secs)));
-        let costs: Vec<String> = costs.collect();
-        if !costs.is_empty() {
-            text += &format!(
-                " Seconds for the same errors of all results with a preset alone: {}.",
-                costs.join(", ")
-            );
-        }
-        if self.costs.iter().any(|cost| cost.all_secs.is_none()) {
-            text += " None: the error of its step is larger.";
-        }
         text
     }
 
@@ -223,8 +208,8 @@ impl Answer {
     /// One line per bound.
     fn bounds_for_programs(&self) -> Table {
         let columns = Table::of(&self.bounds)
-            .column("result", |bound| bound.name.as_str())
-            .column("share", |bound| bound.share)
+            .column("result", |bound| bound.bound.name.as_str())
+            .column("share", |bound| bound.bound.share)
             .column("bound", |bound| bound.value)
             .column("rank", |bound| bound.rank)
             .column("n", |bound| bound.runs)
@@ -271,13 +256,13 @@ impl Bounded {
         let means = match self.confidence {
             Some(holds) => format!(
                 "another run is beyond this value with at most {} % probability; this statement is true with {:.1} %",
-                round::brief(100.0 * (1.0 - self.inner())),
+                round::brief(100.0 * (1.0 - self.bound.inner())),
                 100.0 * holds
             ),
             None => "runs with the same population are not independent, so no probability is given"
                 .to_owned(),
         };
-        format!("{}: {of}; {means}.{missing}\n", self.name)
+        format!("{}: {of}; {means}.{missing}\n", self.bound.name)
     }
 }
 

@@ -1,19 +1,15 @@
 //! The rows of a study, each with the errors asked for.
 
-use std::fmt;
-
 use serde_json::{Map, Value, json};
 
 use super::answer::{ABOUT, Answer, Row};
 use super::bounds::Bounded;
-use super::costs;
 use super::question::{Question, QuestionError};
 use super::run::run;
 use super::wanted::Request;
 use crate::error::LabError;
 use crate::sweep::{Cell, Study, plain};
 use analysis::round;
-use analysis::statistics::{MeanStd, Range};
 use output::document::{Block, Document, Findings, Names};
 use output::table::{Columns, Table};
 use runs::identity::ENGINE;
@@ -96,9 +92,11 @@ impl Answers<'_> {
     /// # Errors
     /// A table cannot be written.
     pub fn findings(&self) -> Result<Findings, LabError> {
-        let results = [Block::text(ABOUT), Block::table(self.table())];
-        let blocks = results.into_iter().chain(self.costs());
-        self.findings_with(blocks.collect())
+        self.findings_with(vec![
+            Block::text(ABOUT),
+            Block::table(self.table()),
+            self.cost(),
+        ])
     }
 
     /// The same with these blocks before the picture.
@@ -162,52 +160,11 @@ impl Answers<'_> {
         columns.table()
     }
 
-    /// What the rows cost, and what each preset would have cost for the same errors: as a table, and in words.
-    pub fn costs(&self) -> Vec<Block> {
-        let Some((_, first)) = self
-            .rows
-            .first()
-            .filter(|(_, first)| !first.costs.is_empty())
-        else {
-            let secs = self.rows.iter().map(|(_, answer)| answer.secs);
-            let secs = round::brief(secs.sum());
-            return vec![Block::Text(format!("{secs} s of computing on one core."))];
-        };
-        let mut columns = self
-            .settings()
-            .column("estimate [s]", |(_, answer)| round::brief(answer.secs));
-        let mut words = String::new();
-        for (k, cost) in first.costs.iter().enumerate() {
-            let preset = costs::name(cost.timed.preset);
-            let secs = |answer: &Answer| answer.costs.get(k)?.all_secs;
-            columns = columns.column(&format!("{preset} [s]"), |(_, answer)| {
-                secs(answer).map(round::brief)
-            });
-            let shares = self
-                .rows
-                .iter()
-                .filter_map(|(_, answer)| Some(answer.secs / secs(answer)?));
-            let shares: Vec<f64> = shares.collect();
-            words += &format!(
-                "For the same errors, estimates took {} of the time of {preset} in {} of {} rows",
-                Shares(&shares),
-                shares.len(),
-                self.rows.len()
-            );
-            words += match shares.len() == self.rows.len() {
-                true => ".\n",
-                false => "; in the others the error of its step is larger than theirs.\n",
-            };
-            let two_steps = self
-                .rows
-                .iter()
-                .filter_map(|(_, answer)| Some(answer.secs / answer.costs.get(k)?.two_steps_secs));
-            words += &format!(
-                "If the error of {preset}'s step must be found, too, from runs at this step and its half: {}.\n",
-                Shares(&two_steps.collect::<Vec<_>>())
-            );
-        }
-        vec![Block::table(columns.table()), Block::Text(words)]
+    /// What the rows cost.
+    pub fn cost(&self) -> Block {
+        let secs = self.rows.iter().map(|(_, answer)| answer.secs);
+        let secs = round::brief(secs.sum());
+        Block::Text(format!("{secs} s of computing on one core."))
     }
 
     /// For programs: one row per combination of settings.
@@ -235,7 +192,8 @@ impl Answers<'_> {
         let first = self.rows.first();
         let bounds = first.map(|(_, answer)| answer.bounds.as_slice());
         let bounds = bounds.unwrap_or_default().iter();
-        let name = |of: &Bounded| format!("{}_{}_percent", of.name, round::brief(100.0 * of.share));
+        let percent = |of: &Bounded| round::brief(100.0 * of.bound.share);
+        let name = |of: &Bounded| format!("{}_{}_percent", of.bound.name, percent(of));
         bounds.map(name).collect()
     }
 
@@ -247,21 +205,6 @@ impl Answers<'_> {
             });
         }
         columns
-    }
-}
-
-/// Shares of times, in words.
-struct Shares<'a>(&'a [f64]);
-
-impl fmt::Display for Shares<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Some(mean) = MeanStd::of(self.0) else {
-            return f.write_str("no share");
-        };
-        let range = Range::of(self.0);
-        let [mean, low, high] =
-            [mean.mean, range.minimum, range.maximum].map(|x| format!("{x:.2}"));
-        write!(f, "{mean} on average ({low} to {high})")
     }
 }
 

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::Serialize;
+
 use analysis::round;
 use analysis::statistics::draws_above;
 use scenario::quote::shown;
@@ -72,7 +74,7 @@ impl FromStr for Wanted {
 }
 
 /// A result, and the share of runs that shall be on one side of a bound.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bound {
     /// The name of the measurement.
     pub name: String,
@@ -157,8 +159,6 @@ pub struct Request {
     pub confidence: f64,
     /// Its limits.
     pub limits: Limits,
-    /// Whether to time some runs with each preset.
-    pub costs: bool,
 }
 
 impl Request {

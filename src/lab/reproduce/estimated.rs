@@ -69,14 +69,13 @@ pub fn estimated(answers: &Answers) -> Result<Findings, LabError> {
          {BANDS_IN_WORDS}. The paper's values are those of its time step, ours of the limit of fine steps. {ABOUT}",
         counts.iter().sum::<usize>(),
     );
-    let mut blocks = vec![
+    answers.findings_with(vec![
         Block::Part(ESTIMATED.to_owned(), "Table 1 with errors".to_owned()),
         Block::table(columns.table()),
         Block::text(verdict),
         Block::Part("costs".to_owned(), "Costs".to_owned()),
-    ];
-    blocks.extend(answers.costs());
-    answers.findings_with(blocks)
+        answers.cost(),
+    ])
 }
 
 /// Whether a cell has the settings of a row.

@@ -8,6 +8,7 @@ use super::Study;
 use super::cell::Cell;
 use crate::error::LabError;
 use crate::gallery::distinct;
+use crate::jobs::Results;
 use analysis::statistics::MeanStd;
 use runs::case::RunResult;
 use runs::identity::ENGINE;
@@ -65,12 +66,10 @@ pub struct Combination<'a> {
 impl<'a> Gathered<'a> {
     /// The state of a study according to `store`.
     pub fn of(study: &'a Study, store: &Store) -> Self {
-        let found = |cell: &Cell| (store.result(&cell.case.key), store.failure(&cell.case.key));
-        let state = |cell: &Cell| match found(cell) {
-            (Ok(Some(result)), _) => State::Finished(Box::new(result)),
-            (Err(damaged), _) => State::Failed(damaged),
-            (_, Some(failure)) => State::Failed(failure.message),
-            (_, None) => State::Missing,
+        let state = |cell: &Cell| match Results(store).outcome(&cell.case.key) {
+            Some(Ok(result)) => State::Finished(Box::new(result)),
+            Some(Err(message)) => State::Failed(message),
+            None => State::Missing,
         };
         Self {
             study,
