@@ -27,7 +27,6 @@ fn request(errors: &[&str]) -> Request {
             runs: 200,
             secs: None,
         },
-        costs: false,
     }
 }
 

@@ -244,8 +244,12 @@ impl Row {
 }
 
 impl OfPreset {
-    /// For an error, from the limit of an estimate and the chance of a single run.
-    pub fn new(timed: Timed, limit: &Limit, [chance, error]: [f64; 2]) -> Self {
+    /// For the error that a result has.
+    pub fn of(timed: Timed, row: &Row) -> Self {
+        Self::new(timed, &row.limit, [row.default.chance, row.reached.error])
+    }
+
+    fn new(timed: Timed, limit: &Limit, [chance, error]: [f64; 2]) -> Self {
         let error_of_step = limit.error_at(timed.step);
         let room = error.powi(2) - error_of_step.powi(2);
         Self {

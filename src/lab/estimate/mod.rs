@@ -7,6 +7,7 @@
 mod answer;
 mod bounds;
 mod compared;
+mod cut;
 mod forecast;
 mod known;
 mod limit;

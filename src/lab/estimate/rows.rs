@@ -20,7 +20,8 @@ use runs::store::Store;
 pub struct Questions<'a> {
     study: &'a Study,
     wanted: Vec<String>,
-    questions: Vec<(&'a Cell, Question)>,
+    /// The first cell of each combination, with its question.
+    pub rows: Vec<(&'a Cell, Question)>,
 }
 
 /// The answers to them.
@@ -38,20 +39,18 @@ impl<'a> Questions<'a> {
     /// # Errors
     /// A combination does not have one of the results; the message names it.
     pub fn new(study: &'a Study, request: &Request) -> Result<Self, QuestionError> {
-        let firsts = study
-            .cells
-            .chunks(study.seeds.max(1))
-            .map(|cells| &cells[0]);
-        let question = |cell: &'a Cell| {
+        let question = |cells: &'a [Cell]| {
+            let cell = &cells[0];
             let question = Question::of(&cell.case, Vec::new(), request.clone(), study.memory);
             let in_row = |error| QuestionError::Row(cell.to_string(), Box::new(error));
             Ok((cell, question.map_err(in_row)?))
         };
+        let rows = study.cells.chunks(study.seeds.max(1)).map(question);
         let wanted = request.wanted.iter().map(|wanted| wanted.name.clone());
         Ok(Self {
             study,
             wanted: wanted.collect(),
-            questions: firsts.map(question).collect::<Result<_, QuestionError>>()?,
+            rows: rows.collect::<Result<_, QuestionError>>()?,
         })
     }
 
@@ -66,9 +65,9 @@ impl<'a> Questions<'a> {
     /// # Errors
     /// As [`run`](fn@super::run).
     pub fn answer(&self, store: &Store, listener: &dyn Listener) -> Result<Answers<'a>, LabError> {
-        let all = self.questions.len();
+        let all = self.rows.len();
         let (mut rows, mut known) = (Vec::new(), Vec::new());
-        for (k, (cell, question)) in self.questions.iter().enumerate() {
+        for (k, (cell, question)) in self.rows.iter().enumerate() {
             listener.notes(&format!("row {} of {all}: {cell}", k + 1));
             let runs = run(question, &known, store, listener)
                 .map_err(|error| LabError::Failed(format!("{cell}: {error}")))?;

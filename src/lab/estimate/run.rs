@@ -2,12 +2,11 @@
 
 use std::time::Instant;
 
-use rayon::current_num_threads;
-
 use super::plan::{Goal, Offer, first_round, further, pilot};
 use super::prior::{Known, Prior};
 use super::question::{Question, Rung};
 use super::series::{Reached, Series};
+use super::wanted::Wanted;
 use crate::error::LabError;
 use crate::jobs::{Results, each};
 use crate::sweep::number;
@@ -192,35 +191,6 @@ impl<'a> Runs<'a> {
         wanted.filter_map(|(wanted, goal)| Known::of(self.question, &wanted.name, &goal?.means))
     }
 
-    /// Reduces the numbers of runs to what the limits allow. Returns the limit that is then reached, if one is.
-    pub(super) fn cut(&self, wanted: &mut [usize], elapsed: f64) -> Option<String> {
-        let limits = self.question.request.limits;
-        let done = self.counts();
-        let sampled = self.sample.as_ref().map_or(0, |of| of.results.len());
-        let made = done.iter().sum::<usize>() + sampled;
-        let free = limits.runs.saturating_sub(made);
-        let mut reached = None;
-        if added(wanted, &done) > free {
-            scale(wanted, &done, free);
-            reached = Some(format!("at most {} runs were allowed", limits.runs));
-        }
-        let Some(secs) = limits.secs else {
-            return reached;
-        };
-        let measured = self.measured_factor();
-        let due = self.levels.iter().zip(wanted.iter()).map(|(level, all)| {
-            (all - level.results.len()) as f64 * level.expected_secs * measured
-        });
-        let due = due.sum::<f64>() / current_num_threads() as f64;
-        if done.iter().any(|&runs| runs > 0) && elapsed + due > secs {
-            let part = ((secs - elapsed) / due).clamp(0.0, 1.0);
-            let room = added(wanted, &done) as f64 * part;
-            scale(wanted, &done, room as usize);
-            reached = Some(format!("at most {} minutes were allowed", secs / 60.0));
-        }
-        reached
-    }
-
     /// The measured time of the runs so far, over the expected time; 1 without runs.
     pub fn measured_factor(&self) -> f64 {
         let finished = self.levels.iter().flat_map(|level| {
@@ -255,9 +225,9 @@ impl<'a> Runs<'a> {
     ) -> Result<(), LabError> {
         let question = self.question;
         let levels = self.levels.iter().zip(wanted).enumerate();
-        let missing = levels
-            .flat_map(|(k, (level, &all))| (level.results.len()..all).map(move |seed| (k, seed)));
-        let missing: Vec<(usize, usize)> = missing.collect();
+        let missing: Vec<(usize, usize)> = levels
+            .flat_map(|(k, (level, &all))| (level.results.len()..all).map(move |seed| (k, seed)))
+            .collect();
         let case = |index: usize| {
             let (k, seed) = missing[index];
             let rung = question.rungs[k];
@@ -280,10 +250,13 @@ impl<'a> Runs<'a> {
         store: &Store,
         listener: &dyn Listener,
     ) -> Result<Outcomes, LabError> {
-        let cases: Result<Vec<(Case, String)>, RunError> = cases.into_iter().collect();
-        let cases = cases.map_err(|error| failed(self.question, error))?;
-        let jobs = cases.iter().map(|(case, name)| case.job(name.clone()));
-        let jobs: Vec<Job> = jobs.collect();
+        let invalid = |error| failed(self.question, error);
+        let named: Result<Vec<(Case, String)>, RunError> = cases.into_iter().collect();
+        let valid = named.map_err(invalid)?;
+        let jobs: Vec<Job> = valid
+            .iter()
+            .map(|(case, name)| case.job(name.clone()))
+            .collect();
         job::run(&jobs, store, self.question.memory(), listener)?;
         let outcome = |job: &Job| Results(store).outcome(&job.key);
         let missing = || Err("no result".to_owned());
@@ -312,7 +285,7 @@ impl<'a> Runs<'a> {
     }
 
     /// The number of runs at each step.
-    fn counts(&self) -> Vec<usize> {
+    pub(super) fn counts(&self) -> Vec<usize> {
         let levels = self.levels.iter();
         levels.map(|level| level.results.len()).collect()
     }
@@ -325,13 +298,13 @@ impl<'a> Runs<'a> {
     /// Notes what is reached.
     pub(super) fn look(&mut self) {
         let request = &self.question.request;
-        let wanted = request.wanted.iter().zip(&self.priors);
-        let wanted = wanted.map(|(wanted, prior)| {
+        let with_goal = |(wanted, prior): (&Wanted, &Prior)| {
             let series = self.series(&wanted.name);
             let means = series.means(prior);
             (series, means.map(|means| Goal::new(wanted.error, means)))
-        });
-        self.wanted = wanted.collect();
+        };
+        let wanted = request.wanted.iter().zip(&self.priors);
+        self.wanted = wanted.map(with_goal).collect();
         let reached = |goal: Option<&Goal>| Some(goal?.reached(request.confidence));
         self.looks.push(Look {
             runs: self.counts(),
@@ -364,45 +337,21 @@ impl<'a> Runs<'a> {
         let Some(look) = self.looks.last() else {
             return String::new();
         };
-        let wanted = self.question.request.wanted.iter().zip(&look.reached);
-        let results = wanted.map(|(wanted, reached)| {
+        let result = |(wanted, reached): (&Wanted, &Option<Reached>)| {
+            let name = &wanted.name;
             let Some(reached) = reached else {
-                return format!("{} has no value", wanted.name);
+                return format!("{name} has no value");
             };
-            let [value, error] =
-                [reached.value, reached.error].map(|number| as_precise(number, reached.error));
-            let part = reached.percent().map(|part| format!(" ({part})"));
-            format!(
-                "{} {value} ± {error}{}, wanted {}",
-                wanted.name,
-                part.unwrap_or_default(),
-                wanted.error
-            )
-        });
+            let written = |number| as_precise(number, reached.error);
+            let (value, error) = (written(reached.value), written(reached.error));
+            let percent = reached.percent().map(|part| format!(" ({part})"));
+            let part = percent.unwrap_or_default();
+            format!("{name} {value} ± {error}{part}, wanted {}", wanted.error)
+        };
+        let wanted = self.question.request.wanted.iter().zip(&look.reached);
         let runs: usize = look.runs.iter().sum();
-        let results: Vec<String> = results.collect();
+        let results: Vec<String> = wanted.map(result).collect();
         format!("after {runs} runs: {}", results.join("; "))
-    }
-}
-
-/// The number of runs that are wanted and not done.
-fn added(wanted: &[usize], done: &[usize]) -> usize {
-    wanted.iter().zip(done).map(|(all, done)| all - done).sum()
-}
-
-/// Reduces the added runs to the largest numbers within `room` in these proportions, then one more each while there is
-/// room.
-fn scale(wanted: &mut [usize], done: &[usize], room: usize) {
-    let asked = added(wanted, done).max(1);
-    let full = wanted.to_vec();
-    for (all, done) in wanted.iter_mut().zip(done) {
-        *all = done + (*all - done) * room / asked;
-    }
-    let mut left = room - added(wanted, done);
-    for (all, full) in wanted.iter_mut().zip(full) {
-        let added = usize::from(*all < full && left > 0);
-        *all += added;
-        left -= added;
     }
 }
 
