@@ -141,13 +141,13 @@ pub struct Counts {
 impl Counts {
     /// The counts that a reader should know of, each with its name.
     pub fn notable(&self) -> impl Iterator<Item = (&'static str, Share)> {
-        let counts = [
+        let named = [
             ("failed", self.failed),
             ("had stuck agents at the end", self.stuck),
             ("ended because no agent arrived for some time", self.idle),
         ];
         let all = self.all;
-        let counts = counts.into_iter().filter(|(_, count)| *count > 0);
+        let counts = named.into_iter().filter(|(_, count)| *count > 0);
         counts.map(move |(name, count)| (name, Share::of(count, all)))
     }
 }
@@ -162,12 +162,12 @@ impl Answer {
         let rows = wanted.clone().filter_map(|(wanted, (series, goal))| {
             Some(Row::of(runs, wanted, series, goal.as_ref()?))
         });
-        let bounds = question.request.bounds.iter();
-        let bounds: Vec<Bounded> = bounds.map(|bound| runs.bounded(bound)).collect();
-        let valueless = wanted.filter(|(_, (_, goal))| goal.is_none());
-        let valueless = valueless.map(|(wanted, _)| runs.without_values(&wanted.name));
-        let unbounded = bounds.iter().filter(|bound| bound.is_lost());
-        let unbounded = unbounded.map(|of| format!("{}: {}", of.bound.name, of.lost()));
+        let asked = question.request.bounds.iter();
+        let bounds: Vec<Bounded> = asked.map(|bound| runs.bounded(bound)).collect();
+        let missing = wanted.filter(|(_, (_, goal))| goal.is_none());
+        let valueless = missing.map(|(wanted, _)| runs.without_values(&wanted.name));
+        let lost = bounds.iter().filter(|bound| bound.is_lost());
+        let unbounded = lost.map(|of| format!("{}: {}", of.bound.name, of.lost()));
         let is_idle = |end| end == Some(End::Idle);
         let [scenario, profile] = question.title.clone();
         Self {
@@ -207,8 +207,8 @@ impl Row {
         let Goal { means, limit, .. } = goal;
         let confidence = runs.question.request.confidence;
         let reached = goal.reached(confidence);
-        let steps = series.steps.iter().zip(&series.values);
-        let steps = steps.filter_map(|(&step, values)| {
+        let levels = series.steps.iter().zip(&series.values);
+        let steps = levels.filter_map(|(&step, values)| {
             let known: Vec<f64> = values.iter().flatten().copied().collect();
             let of = MeanStd::of(&known)?;
             Some(AtStep {

@@ -77,8 +77,8 @@ impl Forecast {
     fn from_goals(runs: &Runs, goals: &[Goal]) -> Self {
         let request = &runs.question.request;
         let offers = runs.offers();
-        let first = runs.first_round();
-        let first = first.unwrap_or_else(|| pilot(&offers, runs.question.start));
+        let known = runs.first_round();
+        let first = known.unwrap_or_else(|| pilot(&offers, runs.question.start));
         let most = request.limits.runs.min(MOST_PREDICTED);
         let (counts, errors) = predicted(goals, &offers, first, (request.confidence, most));
         let used = offers.iter().zip(counts).filter(|(_, runs)| *runs > 0);

@@ -74,8 +74,8 @@ fn of_bound(bounded: &Bounded) -> Panel {
     let all = values.len().max(1) as f64;
     let mut known: Vec<f64> = values.iter().flatten().copied().collect();
     known.sort_by(f64::total_cmp);
-    let stairs = known.iter().enumerate();
-    let stairs = stairs.flat_map(|(k, &value)| [k, k + 1].map(|count| [value, count as f64 / all]));
+    let ranked = known.iter().enumerate();
+    let stairs = ranked.flat_map(|(k, &value)| [k, k + 1].map(|count| [value, count as f64 / all]));
     let ends = spanned(known.iter().copied().chain(*value));
     let asked = Style::broken(GRAY, 1.0, "share asked for");
     let mut marks = vec![
@@ -101,8 +101,8 @@ fn by_step(row: &Row) -> Panel {
         error: error(at),
     });
     let interval = [reached.value - reached.error, reached.value + reached.error];
-    let means = row.steps.iter();
-    let ends = means.flat_map(|at| [at.mean - error(at), at.mean + error(at)]);
+    let levels = row.steps.iter();
+    let ends = levels.flat_map(|at| [at.mean - error(at), at.mean + error(at)]);
     let y = Axis::linear(&row.name, spanned(ends.chain(interval)));
     let x = Axis::linear("time step [s]", [-0.03 * coarsest, 1.06 * coarsest]);
     let color = line_color(0);

@@ -143,11 +143,11 @@ pub fn first_round(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<
     };
     let cost = |at: usize| -> f64 {
         let (counts, errors) = predicted(goals, offers, only(at), (confidence, MOST_TRIED));
-        let secs = offers.iter().zip(counts);
-        let secs: f64 = secs.map(|(offer, runs)| offer.secs * runs as f64).sum();
+        let counted = offers.iter().zip(counts);
+        let secs: f64 = counted.map(|(offer, runs)| offer.secs * runs as f64).sum();
         // Errors that are not reached cost as many times more.
-        let missing = goals.iter().zip(errors);
-        let missing = missing.map(|(goal, error)| (error / goal.tolerance.of(1.0)).max(1.0));
+        let pairs = goals.iter().zip(errors);
+        let missing = pairs.map(|(goal, error)| (error / goal.tolerance.of(1.0)).max(1.0));
         secs * missing.product::<f64>().powi(2)
     };
     let costs: Vec<f64> = (0..offers.len()).map(cost).collect();

@@ -49,12 +49,10 @@ impl Answer {
             blocks.push(Block::figure(curves, sheet.clone(), ""));
         }
         let title = format!("Estimate of {}", self.scenario);
-        let findings = Findings::new(name, Document::of(title, blocks), self.json());
-        let mut findings = tables
-            .iter()
-            .try_fold(findings, |findings, (name, table)| {
-                findings.with_table(name, table)
-            })?;
+        let whole = Findings::new(name, Document::of(title, blocks), self.json());
+        let mut findings = tables.iter().try_fold(whole, |findings, (name, table)| {
+            findings.with_table(name, table)
+        })?;
         if let Some((_, rows)) = &drawn {
             findings.tables.push((curves.to_owned(), curves_csv(rows)?));
         }

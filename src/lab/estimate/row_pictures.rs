@@ -11,8 +11,8 @@ const COLUMNS: usize = 3;
 impl Answers<'_> {
     /// A panel for each result, with an error bar for each row.
     pub fn sheet(&self) -> Sheet {
-        let title = "estimates with intervals from chance and time step";
-        let title = format!("{}: {title}", self.study.name);
+        let what = "estimates with intervals from chance and time step";
+        let title = format!("{}: {what}", self.study.name);
         let panels = self.panels();
         let columns = COLUMNS.min(panels.len().max(1));
         Sheet::new(&title, columns, [200.0, 130.0], panels)

@@ -128,11 +128,11 @@ impl Answers<'_> {
 
     /// As one JSON object.
     pub fn json(&self) -> Value {
-        let rows = self.rows.iter().map(|(cell, answer)| {
+        let entries = self.rows.iter().map(|(cell, answer)| {
             let settings: Map<String, Value> = cell.values.iter().cloned().collect();
             json!({ "settings": settings, "estimate": answer })
         });
-        let rows: Vec<Value> = rows.collect();
+        let rows: Vec<Value> = entries.collect();
         json!({ "study": self.study.name, "about": ABOUT, "engine": ENGINE, "rows": rows })
     }
 
@@ -161,8 +161,8 @@ impl Answers<'_> {
 
     /// What the rows cost.
     pub fn cost(&self) -> Block {
-        let secs = self.rows.iter().map(|(_, answer)| answer.secs);
-        let secs = round::brief(secs.sum());
+        let times = self.rows.iter().map(|(_, answer)| answer.secs);
+        let secs = round::brief(times.sum());
         Block::Text(format!("{secs} s of computing on one core."))
     }
 
@@ -189,8 +189,8 @@ impl Answers<'_> {
     /// The names of bounds, with the share of runs in percent: `time_secs_95_percent`.
     fn bound_names(&self) -> Vec<String> {
         let first = self.rows.first();
-        let bounds = first.map(|(_, answer)| answer.bounds.as_slice());
-        let bounds = bounds.unwrap_or_default().iter();
+        let asked = first.map(|(_, answer)| answer.bounds.as_slice());
+        let bounds = asked.unwrap_or_default().iter();
         let percent = |of: &Bounded| round::brief(100.0 * of.bound.share);
         let name = |of: &Bounded| format!("{}_{}_percent", of.bound.name, percent(of));
         bounds.map(name).collect()

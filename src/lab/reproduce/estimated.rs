@@ -23,12 +23,13 @@ pub const ESTIMATED: &str = "table1-estimate";
 /// The paper's values cannot be read, or it has no such row.
 pub fn estimated(answers: &Answers) -> Result<Findings, LabError> {
     let paper = published().table1.rows;
-    let rows = answers.rows.iter().map(|(cell, answer)| {
-        let row = paper.iter().find(|row| is_of(cell, row)).cloned();
-        let row = row.ok_or_else(|| LabError::missing(cell.to_string(), "row of the paper"))?;
+    let pairs = answers.rows.iter().map(|(cell, answer)| {
+        let published = paper.iter().find(|row| is_of(cell, row)).cloned();
+        let row =
+            published.ok_or_else(|| LabError::missing(cell.to_string(), "row of the paper"))?;
         Ok((row, answer))
     });
-    let rows: Vec<Row> = rows.collect::<Result<_, LabError>>()?;
+    let rows: Vec<Row> = pairs.collect::<Result<_, LabError>>()?;
     let mut columns = Table::of(&rows)
         .column("profile", |(paper, _)| written(&paper.profile))
         .column("setting", |(paper, _)| paper.varied.as_ref().map(varied));

@@ -25,8 +25,8 @@ pub fn save(
     listener.notes(&format!("drawing {} picture(s)", drawn.len()));
     side_by_side(drawn.len(), |k| {
         let (name, Moment { run, at_secs }) = drawn[k];
-        let cell = cells.iter().find(|cell| label(cell) == run);
-        let cell = cell.ok_or_else(|| LabError::missing(name, "run for its picture"))?;
+        let found = cells.iter().find(|cell| label(cell) == run);
+        let cell = found.ok_or_else(|| LabError::missing(name, "run for its picture"))?;
         let failed = |error| LabError::of(run, error);
         let scenario = cell.case.scenario();
         let scenario = scenario.map_err(|error| LabError::of(run, error))?;

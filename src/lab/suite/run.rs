@@ -211,8 +211,8 @@ impl<'a> Planned<'a> {
 
 /// The judgments of a case, and that no agent passed through a wall.
 fn judgments(case: &Case, runs: &Runs) -> Result<Vec<Judgment>, LabError> {
-    let checks = case.checks.iter().map(|check| check.judged(runs));
-    let mut checks: Vec<Judgment> = checks.collect::<Result<_, _>>()?;
+    let judged = case.checks.iter().map(|check| check.judged(runs));
+    let mut checks: Vec<Judgment> = judged.collect::<Result<_, _>>()?;
     let own = runs
         .own
         .iter()

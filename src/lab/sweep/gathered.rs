@@ -80,8 +80,8 @@ impl<'a> Gathered<'a> {
     /// All results as one object.
     pub fn json(&self) -> Value {
         let names = self.numbers();
-        let cells = self.study.cells.iter().zip(&self.states);
-        let cells = cells.map(|(cell, state)| {
+        let all = self.study.cells.iter().zip(&self.states);
+        let cells = all.map(|(cell, state)| {
             let mut entry = json!({
                 "cell": cell.number,
                 "settings": settings(cell),
@@ -100,8 +100,8 @@ impl<'a> Gathered<'a> {
             let entry = |mean: &MeanStd| {
                 json!({ "mean": mean.mean, "ci95": mean.interval_95(), "n": mean.count })
             };
-            let entries = combination.means.iter();
-            let entries = entries.map(|mean| mean.as_ref().map_or(Value::Null, entry));
+            let means = combination.means.iter();
+            let entries = means.map(|mean| mean.as_ref().map_or(Value::Null, entry));
             json!({
                 "settings": combination.cells.first().map(settings),
                 "runs": combination.results.len(),

@@ -186,8 +186,8 @@ impl Study {
         check_name(&name).map_err(invalid)?;
         let shared = Memory::new(memory);
         // Not on rayon's threads: these could start another cell while they hold memory for the first.
-        let cells = each(plan.count, |index| plan.cell(index, &shared))?.into_iter();
-        let cells = cells.enumerate().map(|(index, cell)| {
+        let checked = each(plan.count, |index| plan.cell(index, &shared))?.into_iter();
+        let cells = checked.enumerate().map(|(index, cell)| {
             cell.map_err(|error| StudyError::Cell {
                 file: from.file(),
                 cell: index + 1,
