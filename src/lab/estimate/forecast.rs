@@ -82,20 +82,18 @@ impl Forecast {
         let most = request.limits.runs.min(MOST_PREDICTED);
         let (counts, errors) = predicted(goals, &offers, first, (request.confidence, most));
         let used = offers.iter().zip(counts).filter(|(_, runs)| *runs > 0);
-        let short = request.wanted.iter().zip(goals).zip(errors);
-        let short =
-            short.filter(|((wanted, goal), error)| *error > wanted.error.of(goal.limit.value));
-        let short = short.map(|((wanted, goal), error)| {
+        let mut short = Vec::new();
+        for ((wanted, goal), error) in request.wanted.iter().zip(goals).zip(errors) {
             let reached = Reached {
                 error,
                 ..goal.reached(request.confidence)
             };
-            let percent = reached.percent();
-            (
-                wanted.name.clone(),
-                percent.unwrap_or_else(|| round::brief(error)),
-            )
-        });
+            if error > wanted.error.of(reached.value) {
+                let percent = reached.percent();
+                let error = percent.unwrap_or_else(|| round::brief(error));
+                short.push((wanted.name.clone(), error));
+            }
+        }
         Self {
             based_on: None,
             known: 0,
@@ -104,7 +102,7 @@ impl Forecast {
                 .map(|(offer, runs)| (offer.step, runs))
                 .collect(),
             secs: used.map(|(offer, runs)| offer.secs * runs as f64).sum(),
-            short: short.collect(),
+            short,
         }
     }
 
@@ -122,9 +120,9 @@ impl Forecast {
             format!("{runs} with a step of {} s", round::brief(*step))
         };
         let steps: Vec<String> = self.runs.iter().map(at).collect();
-        let short = self.short.iter();
+        let misses = self.short.iter();
         let short =
-            short.map(|(name, error)| format!("; with these, {name} reaches ± {error} only"));
+            misses.map(|(name, error)| format!("; with these, {name} reaches ± {error} only"));
         format!(
             "expected: {all} runs, {limit}{minutes} min on {threads} threads, from {} {known}: {}{}\n",
             self.known,

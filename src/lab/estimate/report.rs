@@ -101,10 +101,9 @@ impl Answer {
             text += &format!("{why}.\n");
         }
         if let Some(why) = &self.stopped {
-            let missed = self.results.iter().filter(|row| !row.is_reached);
-            let missed: Vec<String> = missed
-                .map(|row| format!("{} to {}", row.name, row.percent()))
-                .collect();
+            let reached = |row: &Row| format!("{} to {}", row.name, row.percent());
+            let rows = self.results.iter().filter(|row| !row.is_reached);
+            let missed: Vec<String> = rows.map(reached).collect();
             if !missed.is_empty() {
                 text += &format!("Not reached, as {why}: {}.\n", missed.join(", "));
             }

@@ -77,12 +77,13 @@ impl Validated {
             ..Changes::default()
         })?;
         let cells = study.cells.iter();
-        let runs = cells.map(|cell| Ok((cell, cell.case.scenario()?.measurements)));
-        let runs: Result<Vec<(&Cell, Vec<Measurement>)>, _> = runs.collect();
-        let runs = runs.map_err(invalid)?;
-        let cases = suite.without_data();
-        let cases: Vec<(&Case, Vec<Kind>)> =
-            cases.map(|case| (case, kinds_of(case, &runs))).collect();
+        let measured = cells.map(|cell| Ok((cell, cell.case.scenario()?.measurements)));
+        let read: Result<Vec<(&Cell, Vec<Measurement>)>, _> = measured.collect();
+        let runs = read.map_err(invalid)?;
+        let with_kinds = suite
+            .without_data()
+            .map(|case| (case, kinds_of(case, &runs)));
+        let cases: Vec<(&Case, Vec<Kind>)> = with_kinds.collect();
         let request = &question.request;
         let wanted = request.wanted.iter().map(|wanted| &wanted.name);
         let names = distinct(wanted.chain(request.bounds.iter().map(|bound| &bound.name)));
