@@ -32,18 +32,9 @@ pub enum QuestionError {
     /// The scenario is invalid or does not fit into memory.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The scenario does not measure a wanted result.
-    #[error("{option} {name}: the scenario has no such result; it has {known}{suggestion}")]
-    Unknown {
-        /// `--error` or `--bound`.
-        option: &'static str,
-        /// The name.
-        name: String,
-        /// The names of all results.
-        known: String,
-        /// "; did you mean …?", or empty.
-        suggestion: String,
-    },
+    /// The scenario does not measure a wanted result: the option, its name, those of all results, and a suggestion.
+    #[error("{0} {1}: the scenario has no such result; it has {2}{3}")]
+    Unknown(&'static str, String, String, String),
     /// A result is wanted twice.
     #[error("{0} {1}: given twice; give it once for each result")]
     Twice(&'static str, String),
@@ -106,11 +97,8 @@ impl Question {
         memory: Option<u64>,
     ) -> Result<Self, QuestionError> {
         let is_typed = |setting: &&Setting| setting.path() != ["profile"];
-        let typed = settings
-            .iter()
-            .filter(is_typed)
-            .map(Setting::brief)
-            .collect();
+        let brief = settings.iter().filter(is_typed).map(Setting::brief);
+        let typed: Vec<String> = brief.collect();
         let case = Case::new(source, settings, &Memory::new(memory))?;
         Self::of(&case, typed, request, memory)
     }
@@ -157,32 +145,29 @@ impl Question {
             case,
             memory,
         };
-        let (wanted, bounds) = (
-            question.request.wanted.iter(),
-            question.request.bounds.iter(),
-        );
-        question.check(
-            "--error",
-            wanted.map(|wanted| wanted.name.as_str()).collect(),
-        )?;
-        question.check("--bound", bounds.map(|bound| bound.name.as_str()).collect())?;
+        let Request { wanted, bounds, .. } = &question.request;
+        question.check("--error", wanted.iter().map(|wanted| &wanted.name))?;
+        question.check("--bound", bounds.iter().map(|bound| &bound.name))?;
         Ok(question)
     }
 
     /// Whether the scenario has these results, and each is given once.
-    fn check(&self, option: &'static str, given: Vec<&str>) -> Result<(), QuestionError> {
-        for (k, name) in given.iter().enumerate() {
-            if !self.names.iter().any(|known| known == name) {
-                return Err(QuestionError::Unknown {
-                    option,
-                    name: shown(name),
-                    known: self.names.join(", "),
-                    suggestion: suggestion(name, self.names.iter().map(String::as_str)),
-                });
+    fn check<'n>(
+        &self,
+        option: &'static str,
+        given: impl Iterator<Item = &'n String>,
+    ) -> Result<(), QuestionError> {
+        let mut seen = Vec::new();
+        for name in given {
+            if !self.names.contains(name) {
+                let known = self.names.join(", ");
+                let similar = suggestion(name, self.names.iter().map(String::as_str));
+                return Err(QuestionError::Unknown(option, shown(name), known, similar));
             }
-            if given[..k].contains(name) {
+            if seen.contains(&name) {
                 return Err(QuestionError::Twice(option, shown(name)));
             }
+            seen.push(name);
         }
         Ok(())
     }
@@ -219,11 +204,10 @@ impl Question {
         population: usize,
         repetition: usize,
     ) -> Result<Case, RunError> {
-        let seeds = [("seed", population), ("population_seed", population)];
-        self.at(
-            rung,
-            &[&seeds[..], &[("behavior_seed", repetition)]].concat(),
-        )
+        let keys = ["seed", "population_seed", "behavior_seed"];
+        let numbers = [population, population, repetition];
+        let seeds: Vec<(&str, usize)> = keys.into_iter().zip(numbers).collect();
+        self.at(rung, &seeds)
     }
 
     /// A run at a step, with these seeds by their numbers.
