@@ -2,7 +2,9 @@
 
 use sandbox::analysis::round;
 use sandbox::lab::error::LabError;
-use sandbox::lab::estimate::{Answer, OfPreset, Question, Questions, Request, Timed};
+use sandbox::lab::estimate::{
+    Answer, OfPreset, Question, QuestionError, Questions, Request, Timed,
+};
 use sandbox::lab::gallery::around;
 use sandbox::lab::jobs::results;
 use sandbox::lab::sweep::Study;
@@ -18,7 +20,6 @@ use serde_json::json;
 
 /// The name of the results.
 pub const COSTS: &str = "costs";
-/// The presets.
 const PRESETS: [Preset; 3] = [Preset::Paper, Preset::Fast, Preset::Accurate];
 /// The number of runs with each preset that are timed.
 const TIMED: usize = 3;
@@ -35,8 +36,8 @@ pub fn costs(
     listener: &dyn Listener,
 ) -> Result<Findings, LabError> {
     let study = Study::built_in("table1_errors", None, None)?;
-    let questions = Questions::new(&study, request);
-    let questions = questions.map_err(|error| LabError::Data(error.to_string()))?;
+    let invalid = |error: QuestionError| LabError::Data(error.to_string());
+    let questions = Questions::new(&study, request).map_err(invalid)?;
     let answers = questions.answer(store, listener)?;
     let rows = questions.rows.iter().zip(&answers.rows);
     let rows = rows.map(|((cell, question), (_, answer))| {
@@ -69,8 +70,8 @@ pub fn costs(
     let panels = answers.panels().into_iter().chain(costs).collect();
     let title = "Costs of estimates and of presets";
     let sheet = Sheet::new(title, 2, [200.0, 130.0], panels);
-    let blocks = [Block::table(table.clone()), Block::figure(COSTS, sheet, "")];
-    let document = Document::of(title, blocks.into());
+    let blocks = vec![Block::table(table.clone()), Block::figure(COSTS, sheet, "")];
+    let document = Document::of(title, blocks);
     let data = json!({ "estimates": answers.json(), "kinds": KINDS });
     Ok(Findings::new(COSTS, document, data).with_table(COSTS, &table)?)
 }
@@ -97,11 +98,8 @@ fn timed(
     listener: &dyn Listener,
 ) -> Result<[Timed; 3], LabError> {
     let invalid = |error: RunError| LabError::of(question.title[0].clone(), error);
-    let mut timed = PRESETS.map(|preset| Timed {
-        preset,
-        step: 0.0,
-        secs: 0.0,
-    });
+    let (step, secs) = (0.0, 0.0);
+    let mut timed = PRESETS.map(|preset| Timed { preset, step, secs });
     for of in &mut timed {
         let case = |k| {
             let preset = ("preset", json!(of.preset));

@@ -30,8 +30,7 @@ Examples:
 
 #[derive(Args)]
 pub struct EstimateOptions {
-    /// The name of a scenario (see `sandbox list`), or a scenario file; or a study (see `sandbox sweep`): each combination
-    /// of its settings
+    /// The name of a scenario (see `sandbox list`), or a scenario file; or a study (see `sandbox sweep`): each row of it
     pub scenario: String,
     #[command(flatten)]
     pub error: ErrorOptions,

@@ -140,8 +140,8 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
 /// Estimates the rows of the study.
 fn estimate(study: &Study, options: &SweepOptions) -> Result<(), Failure> {
     talk(
-        "note: `sandbox sweep STUDY --error …` is `sandbox estimate STUDY --error …` now; the old spelling works in this \
-         version only",
+        "note: `sandbox sweep STUDY --error …` is `sandbox estimate STUDY --error …` now; the old spelling works in \
+         this version only",
     );
     let alone = options.shard.is_none() && !options.merge && !options.list;
     if !alone || !options.draw.is_empty() || !options.over.is_empty() {

@@ -29,9 +29,9 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    /// From the finished runs of the same scenario and profile in `store`; if these do not have all wanted results, from
-    /// similar results in other scenes. `None` if there are none for one of the wanted results, if an error is then
-    /// asked for in the result's unit, and if only bounds are asked for.
+    /// From the finished runs of the same scenario and profile in `store`; if these do not have all wanted results,
+    /// from similar results in other scenes. `None` if there are none for one of the wanted results, if an error is
+    /// then asked for in the result's unit, and if only bounds are asked for.
     ///
     /// # Errors
     /// The scenario has become invalid.

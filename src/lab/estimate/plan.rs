@@ -156,8 +156,8 @@ pub fn first_round(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<
 }
 
 /// The number of runs at each of `offers` that an estimate is expected to need that begins with `first`, from what is
-/// known of its goals: at most `most`, or those of the first round. Also the errors that they are expected to give, half
-/// widths in the order of the goals.
+/// known of its goals: at most `most`, or those of the first round. Also the errors that they are expected to give,
+/// half widths in the order of the goals.
 pub fn predicted(
     known: &[Goal],
     offers: &[Offer],

@@ -103,8 +103,8 @@ impl Prior {
         similar: 0,
     };
 
-    /// What is known about a result of a profile: from `rows`, finished rows of the same study, and from what ships with
-    /// the program about its quantity, without the scene `but`.
+    /// What is known about a result of a profile: from `rows`, finished rows of the same study, and from what ships
+    /// with the program about its quantity, without the scene `but`.
     pub fn of(
         [profile, result]: [&str; 2],
         quantity: Option<Quantity>,

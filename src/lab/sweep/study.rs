@@ -127,7 +127,8 @@ impl Study {
         Self::changed(&Written::open(path, FOLDER)?, &Changes::default(), memory)
     }
 
-    /// The study in a file, by its keys, or the built-in one of this name; `None` if a scenario or nothing has the name.
+    /// The study in a file, by its keys, or the built-in one of this name; `None` if a scenario or nothing has this
+    /// name.
     ///
     /// # Errors
     /// As [`read`](Self::read).
