@@ -241,6 +241,11 @@ impl Row {
             limit: limit.clone(),
         }
     }
+
+    /// The number of runs with a value.
+    pub(super) fn runs(&self) -> usize {
+        self.steps.iter().map(|at| at.runs).sum()
+    }
 }
 
 impl OfPreset {

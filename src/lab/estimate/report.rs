@@ -184,7 +184,6 @@ impl Answer {
 
     /// One line per result.
     fn for_programs(&self) -> Table {
-        let runs = |row: &Row| row.steps.iter().map(|at| at.runs).sum::<usize>();
         let finest = |row: &Row| row.steps.first().map(|at| at.step);
         let columns = Table::of(&self.results)
             .column("result", |row| row.name.as_str())
@@ -192,7 +191,7 @@ impl Answer {
             .column("error", |row| row.reached.error)
             .column("seeds", |row| row.reached.seeds)
             .column("step", |row| row.reached.step)
-            .column("n", runs)
+            .column("n", Row::runs)
             .column("wanted", |row| row.wanted.as_str())
             .column("reached", |row| row.is_reached)
             .column("confidence", |_| self.confidence)
@@ -274,11 +273,10 @@ impl Row {
         let (name, default) = (&self.name, self.default);
         let [found, reached] = [default.error_of_step, self.reached.error];
         let [error, around] = [found, reached].map(|error| self.written(error));
+        let step = format!("default step of {} s", round::brief(default.timed.step));
         let what = match found.abs() < reached {
-            true => {
-                format!("No error of the default step of 0.02 s was found in {name} (± {around})")
-            }
-            false => format!("The default step of 0.02 s has an error of {error} in {name}"),
+            true => format!("No error of the {step} was found in {name} (± {around})"),
+            false => format!("The {step} has an error of {error} in {name}"),
         };
         match default.runs.map(f64::ceil) {
             Some(runs) => format!(

@@ -149,7 +149,7 @@ impl Answers<'_> {
                 .column("reached", |(_, answer)| {
                     answer.row(name).map_or("no value", Row::yes_or_no)
                 })
-                .column("n", |(_, answer)| answer.row(name).map(runs));
+                .column("n", |(_, answer)| answer.row(name).map(Row::runs));
         }
         for (k, name) in self.bound_names().into_iter().enumerate() {
             columns = columns.column(&name, |(_, answer)| {
@@ -177,7 +177,7 @@ impl Answers<'_> {
                 .column(&format!("{name}_seeds"), |line| Some(reached(line)?.seeds))
                 .column(&format!("{name}_step"), |line| Some(reached(line)?.step))
                 .column(&format!("{name}_n"), |(_, answer)| {
-                    answer.row(name).map(runs)
+                    answer.row(name).map(Row::runs)
                 });
         }
         for (k, name) in self.bound_names().into_iter().enumerate() {
@@ -210,9 +210,4 @@ impl Answers<'_> {
 /// The name of the files with the answers, without an extension.
 fn name(study: &Study) -> String {
     format!("{}-estimate", study.name)
-}
-
-/// The number of runs with a value.
-fn runs(row: &Row) -> usize {
-    row.steps.iter().map(|at| at.runs).sum()
 }
