@@ -321,35 +321,6 @@ fn every_row_of_a_study_has_the_error_asked_for() {
     assert_eq!(json(&swept)["rows"], answers["rows"]);
     let note = "note: `sandbox sweep STUDY --error …` is `sandbox estimate STUDY --error …` now";
     assert!(stderr(&swept).contains(note), "{}", stderr(&swept));
-    for (more, said) in [
-        (&["--shard", "1/2"][..], "'--shard'"),
-        (
-            &["--profile", "sf"],
-            "--profile sf: is for scenarios; study.json is a study",
-        ),
-        (&["--plan"], "--plan: is for scenarios"),
-    ] {
-        let refused = run_in(folder.path(), &[&arguments[..], more].concat());
-        assert_eq!(refused.status.code(), Some(2));
-        assert!(stderr(&refused).contains(said), "{}", stderr(&refused));
-    }
-    let sharded = run_in(
-        folder.path(),
-        &[
-            "sweep",
-            "study.json",
-            "--error",
-            "time_secs=5%",
-            "--shard",
-            "1/2",
-        ],
-    );
-    assert_eq!(sharded.status.code(), Some(2));
-    assert!(
-        stderr(&sharded).contains("without --shard"),
-        "{}",
-        stderr(&sharded)
-    );
 }
 
 #[test]

@@ -30,7 +30,7 @@ Examples:
 
 #[derive(Args)]
 pub struct EstimateOptions {
-    /// The name of a scenario (see `sandbox list`), or a scenario file; or a study (see `sandbox sweep`): each row of it
+    /// The name of a scenario (see `sandbox list`), or a scenario file; or a study (see `sandbox sweep`), for its rows
     pub scenario: String,
     #[command(flatten)]
     pub error: ErrorOptions,
