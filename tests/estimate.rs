@@ -162,7 +162,7 @@ fn intervals_hold_the_limit_of_drawn_data_as_often_as_they_say() {
         let values = values.collect();
         let means = Series { steps, values }.means(&Prior::NONE).unwrap();
         for (held, confidence) in held.iter_mut().zip([0.8, 0.95]) {
-            let reached = means.reached(confidence).0;
+            let reached = means.reached(confidence);
             *held += usize::from((reached.value - 100.0).abs() <= reached.error);
         }
     }
@@ -202,13 +202,10 @@ fn no_runs_are_added_once_the_error_is_small_enough() {
         (0.025, &[9.0, 11.0, 10.0, 10.5, 9.5]),
         (0.05, &[10.0, 9.2, 10.8, 10.1, 9.9]),
     ]);
-    let reached = means.reached(0.95).0;
+    let reached = means.reached(0.95);
     for (factor, is_done) in [(1.01, true), (0.99, false)] {
         let tolerance = Tolerance::Absolute(factor * reached.error);
-        let goal = Goal {
-            means: means.clone(),
-            tolerance,
-        };
+        let goal = Goal::new(tolerance, means.clone());
         let further = further(&[goal], &offers([0, 5, 5]), 0.95);
         assert_eq!(further.is_none(), is_done, "{further:?}");
     }
@@ -222,13 +219,10 @@ fn smaller_errors_are_expected_to_need_more_runs() {
     ]);
     let runs = |part: f64| -> usize {
         let tolerance = Tolerance::Relative(part);
-        let goal = Goal {
-            means: means.clone(),
-            tolerance,
-        };
-        let (limit, offers) = (goal.means.limit(), offers([0, 0, 0]));
+        let goal = Goal::new(tolerance, means.clone());
+        let offers = offers([0, 0, 0]);
         let first = pilot(&offers, 1);
-        predicted(&[(goal, limit)], &offers, first, (0.95, 100_000))
+        predicted(&[goal], &offers, first, (0.95, 100_000))
             .0
             .iter()
             .sum()
@@ -272,7 +266,7 @@ fn a_result_that_is_always_zero_is_exact() {
         values: vec![vec![Some(0.0); 5], vec![Some(0.0); 5]],
     };
     let means = series.means(&Prior::NONE).unwrap();
-    let reached = means.reached(0.95).0;
+    let reached = means.reached(0.95);
     assert_eq!(
         [reached.value, reached.error, reached.seeds, reached.step],
         [0.0; 4]

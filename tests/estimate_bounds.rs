@@ -1,4 +1,4 @@
-//! Bounds by order statistics, curves with bands, and costs of presets.
+//! Bounds by order statistics, and curves with bands.
 
 use std::fs;
 use std::path::Path;
@@ -277,42 +277,4 @@ fn curves_of_an_estimate_have_bands_around_their_means() {
     // Numbers of passages rise to all 25 people.
     assert!(rows.windows(2).all(|pair| pair[0][1] <= pair[1][1]));
     assert_eq!(rows.last().unwrap()[1], 25.0);
-}
-
-#[test]
-fn costs_are_those_of_the_presets_for_the_same_error() {
-    let folder = tempfile::tempdir().unwrap();
-    let answer = answer(folder.path(), &["--error", "time_secs=5%", "--costs"]);
-    let row = &answer["results"][0];
-    let presets = row["presets"].as_array().unwrap();
-    let names: Vec<&str> = presets
-        .iter()
-        .filter_map(|of| of["preset"].as_str())
-        .collect();
-    assert_eq!(names, ["paper", "fast", "accurate"]);
-    let steps: Vec<f64> = presets
-        .iter()
-        .filter_map(|of| of["step"].as_f64())
-        .collect();
-    assert_eq!([steps[0], steps[2]], [0.02, 0.005]);
-    assert_eq!(row["default"], presets[0]);
-    let number = |value: &Value| value.as_f64().unwrap();
-    for (of, cost) in presets.iter().zip(answer["costs"].as_array().unwrap()) {
-        assert!(number(&of["secs"]) > 0.0);
-        // Chance in 2 y(h/2) − y(h), from n runs each, is √(4 + 1) / √n of that of a run; half the step costs twice.
-        let pairs = (number(&cost["two_steps_secs"]) / number(&of["secs"]) / 3.0).round();
-        let left = |pairs: f64| (5.0 / pairs).sqrt() * number(&of["chance"]);
-        assert!(left(pairs) <= number(&row["error"]) * (1.0 + 1e-9));
-        assert!(pairs == 2.0 || left(pairs - 1.0) > number(&row["error"]) * (1.0 - 1e-9));
-        let Some(runs) = of["runs"].as_f64() else {
-            assert!(cost["all_secs"].is_null());
-            continue;
-        };
-        // Chance and step together are the error that was reached.
-        let total = (number(&of["chance"]) / runs.sqrt()).hypot(number(&of["error_of_step"]));
-        assert!(runs == 1.0 || (total / number(&row["error"]) - 1.0).abs() < 1e-9);
-        assert!(
-            (number(&cost["all_secs"]) / (runs.ceil() * number(&of["secs"])) - 1.0).abs() < 1e-9
-        );
-    }
 }

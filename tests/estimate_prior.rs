@@ -3,7 +3,7 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sandbox::lab::estimate::{
-    Goal, Hope, Known, Means, Offer, Prior, Series, Tolerance, first_round, further,
+    Goal, Known, Means, Offer, Prior, Quantity, Series, Tolerance, first_round, further,
 };
 
 /// Finished rows of a study with this spread, and these errors of the paper's step.
@@ -12,6 +12,7 @@ fn rows(spread: f64, errors: &[f64]) -> Vec<Known> {
         scene: "room".into(),
         profile: "sph".into(),
         result: "flow_per_s".into(),
+        quantity: Quantity::Flow,
         spread,
         degrees: 20.0,
         error,
@@ -21,7 +22,11 @@ fn rows(spread: f64, errors: &[f64]) -> Vec<Known> {
 }
 
 fn prior(spread: f64, errors: &[f64]) -> Prior {
-    Prior::of("sph", "flow_per_s", &rows(spread, errors), None)
+    of_flows(&rows(spread, errors), None)
+}
+
+fn of_flows(rows: &[Known], but: Option<&str>) -> Prior {
+    Prior::of(["sph", "flow_per_s"], Some(Quantity::Flow), rows, but)
 }
 
 fn normal(rng: &mut ChaCha8Rng) -> f64 {
@@ -67,10 +72,10 @@ fn the_shares_of_sizes_follow_the_errors_of_similar_results() {
 
 #[test]
 fn the_scene_itself_can_be_left_out() {
-    let all = Prior::of("sph", "flow_per_s", &[], None);
-    let without = Prior::of("sph", "flow_per_s", &[], Some("gap"));
+    let all = of_flows(&[], None);
+    let without = of_flows(&[], Some("gap"));
     assert!(0 < without.similar && without.similar < all.similar);
-    let unknown = Prior::of("sph", "agents_through_walls", &[], None);
+    let unknown = Prior::of(["sph", "agents_through_walls"], None, &[], None);
     assert_eq!(unknown, Prior::NONE);
 }
 
@@ -103,10 +108,7 @@ fn estimated(prior: &Prior, all: &Series, first: &[usize]) -> (Means, usize) {
             values: values.map(|(v, &count)| v[..count].to_vec()).collect(),
         };
         let means = series.means(prior).unwrap();
-        let goal = Goal {
-            means: means.clone(),
-            tolerance: WANTED,
-        };
+        let goal = Goal::new(WANTED, means.clone());
         let more = further(&[goal], &offers(&counts), 0.95);
         let asked = counts.iter().zip(more.iter().flatten());
         let asked: Vec<usize> = asked.map(|(all, more)| all + more).collect();
@@ -120,17 +122,14 @@ fn estimated(prior: &Prior, all: &Series, first: &[usize]) -> (Means, usize) {
 /// Rows with a spread of 2 % and small errors are known; the truth has these values.
 fn covered([spread, error]: [f64; 2], prior: &Prior) -> [f64; 2] {
     let mut rng = ChaCha8Rng::seed_from_u64(11);
-    let hope = Hope {
-        prior: prior.clone(),
-        tolerance: WANTED,
-    };
-    let first = first_round(&[hope], &offers(&[0; 6]), 0.95).unwrap();
+    let goal = Goal::expected(WANTED, prior).unwrap();
+    let first = first_round(&[goal], &offers(&[0; 6]), 0.95).unwrap();
     let draws = 200;
     let (mut held, mut runs) = (0, 0);
     for _ in 0..draws {
         let all = drawn(&[RUNS; 6], spread, error, &mut rng);
         let (means, count) = estimated(prior, &all, &first);
-        let reached = means.reached(0.95).0;
+        let reached = means.reached(0.95);
         held += usize::from((reached.value - 100.0).abs() <= reached.error);
         runs += count;
     }
@@ -152,24 +151,20 @@ fn intervals_hold_with_right_and_with_wrong_knowledge() {
 fn knowledge_saves_runs() {
     let known = prior(0.02, &[0.1, -0.2, 0.0, 0.1, -0.1, 0.2]);
     let [_, with] = covered([2.0, 0.0], &known);
-    let [_, without] = covered([2.0, 0.0], &Prior::of("sph", "flow_per_s", &[], None));
+    let [_, without] = covered([2.0, 0.0], &of_flows(&[], None));
     assert!(with < without, "{with} {without}");
 }
 
 #[test]
 fn the_first_round_is_at_one_step_if_spreads_are_known() {
-    let hope = |prior, tolerance| Hope { prior, tolerance };
-    let known = || prior(0.02, &[0.1, -0.1]);
-    let one = hope(known(), Tolerance::Relative(0.02));
-    let round = first_round(std::slice::from_ref(&one), &offers(&[0; 6]), 0.95).unwrap();
+    let known = prior(0.02, &[0.1, -0.1]);
+    let goal = Goal::expected(Tolerance::Relative(0.02), &known).unwrap();
+    let round = first_round(&[goal], &offers(&[0; 6]), 0.95).unwrap();
     assert_eq!(round.iter().filter(|runs| **runs > 0).count(), 1);
-    for other in [
-        hope(known(), Tolerance::Absolute(0.02)),
-        hope(Prior::NONE, Tolerance::Relative(0.02)),
+    for (prior, tolerance) in [
+        (&known, Tolerance::Absolute(0.02)),
+        (&Prior::NONE, Tolerance::Relative(0.02)),
     ] {
-        assert_eq!(
-            first_round(&[one.clone(), other], &offers(&[0; 6]), 0.95),
-            None
-        );
+        assert!(Goal::expected(tolerance, prior).is_none());
     }
 }

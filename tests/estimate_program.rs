@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use sandbox::lab::estimate::{Prior, Series};
+use sandbox::lab::estimate::{Prior, Quantity, Series};
 use serde_json::Value;
 
 use crate::common::pictures;
@@ -125,8 +125,8 @@ fn an_answer_is_that_of_its_runs() {
             stderr(&alone)
         );
     }
-    let known = Prior::of("sph", "time_secs", &[], None);
-    let reached = found.means(&known).unwrap().reached(0.95).0;
+    let known = Prior::of(["sph", "time_secs"], Some(Quantity::Time), &[], None);
+    let reached = found.means(&known).unwrap().reached(0.95);
     for (name, expected) in [("value", reached.value), ("error", reached.error)] {
         let said = row[name].as_f64().unwrap();
         assert!((said - expected).abs() < 1e-9 * expected, "{name}: {said}");
@@ -288,7 +288,13 @@ fn every_row_of_a_study_has_the_error_asked_for() {
     let study = r#"{"scenario": "evacuation", "settings": {"grids.0.columns": 7, "grids.0.rows": 7},
         "grid": {"profile": ["sph", "walk+sph"]}, "seeds": 2}"#;
     fs::write(folder.path().join("study.json"), study).unwrap();
-    let arguments = ["sweep", "study.json", "--error", "time_secs=5%", "--json"];
+    let arguments = [
+        "estimate",
+        "study.json",
+        "--error",
+        "time_secs=5%",
+        "--json",
+    ];
     let output = run_in(folder.path(), &arguments);
     let answers = json(&output);
     let rows = answers["rows"].as_array().unwrap();
@@ -310,14 +316,11 @@ fn every_row_of_a_study_has_the_error_asked_for() {
     assert_eq!(table.lines().next(), Some(head));
     let texts = ["sph", "walk+sph", "profile", "time_secs"];
     pictures::assert_has(&folder.path().join("study/study-estimate"), &texts);
-    let sharded = [&arguments[..4], &["--shard", "1/2"]].concat();
-    let refused = run_in(folder.path(), &sharded);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(
-        stderr(&refused).contains("without --shard"),
-        "{}",
-        stderr(&refused)
-    );
+    // The old spelling makes no runs of its own.
+    let swept = run_in(folder.path(), &[&["sweep"], &arguments[1..]].concat());
+    assert_eq!(json(&swept)["rows"], answers["rows"]);
+    let note = "note: `sandbox sweep STUDY --error …` is `sandbox estimate STUDY --error …` now";
+    assert!(stderr(&swept).contains(note), "{}", stderr(&swept));
 }
 
 #[test]

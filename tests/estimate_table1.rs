@@ -27,7 +27,6 @@ fn request(errors: &[&str]) -> Request {
             runs: 200,
             secs: None,
         },
-        costs: false,
     }
 }
 
@@ -103,4 +102,21 @@ fn only_table_1_has_rows_with_the_same_results() {
         "never",
     ];
     refused(&unknown, 2, &["cell 1", "did you mean", "density_mean_15s"]);
+}
+
+#[test]
+fn options_of_scenarios_and_of_studies_without_errors_are_refused() {
+    let asked = ["table1", "--error", "flow_per_s=5%", "--out", "never"];
+    for (command, more, said) in [
+        ("estimate", &["--shard", "1/2"][..], "'--shard'"),
+        (
+            "estimate",
+            &["--profile", "sf"],
+            "--profile sf: is for scenarios; table1 is a study",
+        ),
+        ("estimate", &["--plan"], "--plan: is for scenarios"),
+        ("sweep", &["--shard", "1/2"], "without --shard"),
+    ] {
+        refused(&[&[command], &asked[..], more].concat(), 2, &[said]);
+    }
 }

@@ -41,7 +41,7 @@ const COMMANDS: [Command; 11] = [
         ..command(&["sweep", "study.json"], Some("study"))
     },
     command(
-        &["sweep", "study.json", "--error", "time_secs=50%"],
+        &["estimate", "study.json", "--error", "time_secs=50%"],
         Some("study"),
     ),
     command(

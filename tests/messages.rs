@@ -161,7 +161,7 @@ fn no_command_prints_control_characters_of_names() {
         "compare room.csv room.csv",
         "sweep study.json --list",
         "sweep study.json",
-        "sweep study.json --error time_secs=50%",
+        "estimate study.json --error time_secs=50%",
         "estimate room.json --error time_secs=50%",
         "verify suite.json --out verified",
         "validate suite.json --out validated",

@@ -7,10 +7,12 @@ use std::process::ExitCode;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, value_parser};
+use experiments::costs::{COSTS, costs};
 use experiments::intervals::{COVERAGE, KNOWLEDGE, Pool, coverage, knowledge};
 use experiments::{compare, domains, physics, symmetric, walls};
 use sandbox::cli::{
-    CaseOptions, Failure, PrintOptions, ResultOptions, TimingOptions, UpdateOptions, Watch, main_of,
+    CaseOptions, ErrorOptions, Failure, PrintOptions, ResultOptions, TimingOptions, UpdateOptions,
+    Watch, main_of,
 };
 use sandbox::lab::reproduce::{Product, reproduce};
 use sandbox::output::document::Names;
@@ -53,6 +55,12 @@ enum Command {
         after_help = "Example: cargo run --release -p experiments -- physics start-waves --out DIR"
     )]
     Physics(PhysicsOptions),
+    /// What would the errors that `sandbox estimate` reaches in rows of Table 1 cost with presets? (minutes)
+    #[command(
+        after_help = "Example: cargo run --release -p experiments -- costs --error flow_per_s=3% --out DIR",
+        mut_arg("errors", |errors| errors.required(true))
+    )]
+    Costs(CostOptions),
     /// What does `sandbox estimate` know before the first run? Its JSON ships with the program (an hour)
     Knowledge(CaseOptions),
 }
@@ -62,6 +70,14 @@ struct PhysicsOptions {
     /// The questions
     #[arg(required = true, value_parser = PossibleValuesParser::new(physics::PRODUCTS.map(|product| product.name)))]
     questions: Vec<String>,
+    #[command(flatten)]
+    cases: CaseOptions,
+}
+
+#[derive(Args)]
+struct CostOptions {
+    #[command(flatten)]
+    error: ErrorOptions,
     #[command(flatten)]
     cases: CaseOptions,
 }
@@ -123,6 +139,10 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Walls(options) => measure_walls(options),
         Command::Coverage(options) => count_intervals(options),
         Command::Physics(options) => answer(&options.questions, &options.cases),
+        Command::Costs(CostOptions { error, cases }) => {
+            let store = cases.store(&[COSTS], &Names::new(COSTS, &[COSTS], &[COSTS]))?;
+            cases.give(&costs(&error.request(), &store, &Watch::new())?)
+        }
         Command::Knowledge(cases) => {
             let store = cases.store(&[KNOWLEDGE], &Names::new(KNOWLEDGE, &[KNOWLEDGE], &[]))?;
             cases.give(&knowledge(&store, &Watch::new())?.findings()?)

@@ -24,7 +24,6 @@ def estimate(
     *,
     bound: Mapping[str, str] | None = None,
     runs: str | None = None,
-    costs: bool = False,
     confidence: float = 95,
     most_runs: int | None = None,
     most_minutes: float | None = None,
@@ -39,9 +38,8 @@ def estimate(
     `errors` has the half width of the confidence interval of each result, in percent of the value or in its unit:
     `{"flow_per_s": "1%", "density_mean_15s": 0.05}`. `bound` has the share of runs that shall be at most a bound, for
     results whose bounds are wanted: `{"time_secs": "95%"}`; with `runs="imo"` they are made of 50 runs as in IMO's
-    guidelines. With `costs`, three runs with each preset are timed, and `costs` of the answer says what the same errors
-    would cost with it alone. `confidence` is in percent. `out` is the folder that keeps the runs (default: none); runs
-    finished there are not made again. `settings` are keys of the scenario, as for `run`.
+    guidelines. `confidence` is in percent. `out` is the folder that keeps the runs (default: none); runs finished there
+    are not made again. `settings` are keys of the scenario, as for `run`.
 
     If a limit ends the estimate before all errors are as small as asked for, a warning says so. Raises `Error` if
     something is invalid, or a result has no value.
@@ -59,7 +57,6 @@ def estimate(
             "error": wanted,
             "bound": shares,
             "runs": runs,
-            "costs": costs,
             "confidence": confidence,
             "most_runs": most_runs,
             "most_minutes": most_minutes,
@@ -124,18 +121,6 @@ class Estimate:
         ]
         names = pandas.Index([of["name"] for of in bounds], name="result")
         return pandas.DataFrame(rows, index=names, columns=["bound", "share", "n", "confidence"])
-
-    @property
-    def costs(self) -> pandas.DataFrame:
-        """One row per preset, with `costs=True`: its time `step`, the time of a run, `secs`, and `all_secs`, the time of as
-        many runs as give the errors of all results (NaN if no number does) if the error of its step is known;
-        `two_steps_secs`, that of runs at its step and at half of it if this error is found from them. The estimate
-        itself took `answer["secs"]`; all are seconds on one core."""
-        import pandas
-
-        costs = self.answer.get("costs", [])
-        names = pandas.Index([of["preset"] for of in costs], name="preset")
-        return pandas.DataFrame(costs, index=names, columns=["step", "secs", "all_secs", "two_steps_secs"]).astype(float)
 
     def plot(self) -> Picture:
         """The way to each result: means at each time step, errors by the number of runs and by computing time. Without

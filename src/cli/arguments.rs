@@ -241,9 +241,6 @@ pub struct ErrorOptions {
     /// The time after which no more runs begin, minutes [default: no limit]
     #[arg(long, value_name = "MINUTES", requires = "asked", value_parser = values::minutes)]
     pub most_minutes: Option<f64>,
-    /// Also time three runs with each preset, and say what the same errors would cost with it alone
-    #[arg(long, requires = "errors")]
-    pub costs: bool,
 }
 
 impl ErrorOptions {
@@ -266,7 +263,6 @@ impl ErrorOptions {
                 runs: self.most_runs,
                 secs: self.most_minutes.map(|minutes| 60.0 * minutes),
             },
-            costs: self.costs,
         }
     }
 }

@@ -49,7 +49,7 @@ mod sweep;
 mod commands;
 mod manual;
 
-pub use arguments::PrintOptions;
+pub use arguments::{ErrorOptions, PrintOptions};
 pub use bench::{ResultOptions, TimingOptions};
 pub use failure::Failure;
 pub use results::json as json_report;

@@ -2,16 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Arg, Args};
 use serde_json::{Value, json};
 
 use super::arguments::{ErrorOptions, PrintOptions, ReplaceOptions, use_threads};
 use super::documents::{DocumentOptions, add_folder, show};
-use super::estimate::all_reached;
+use super::estimate::{Rows, of_rows};
 use super::failure::Failure;
 use super::terminal::{talk, tell};
 use super::watch::Watch;
-use lab::estimate::Questions;
 use lab::machine::main_memory;
 use lab::report::of_study;
 use lab::sweep::{Drawing, Gathered, Shard, State, Study, run as run_shard};
@@ -32,12 +31,26 @@ pub const EXAMPLE: &str = r#"A study, JSON:
 Examples:
   sandbox sweep study.json
   sandbox sweep study.json --merge --draw flow_per_s --over gas_constant
-  sandbox sweep study.json --error flow_per_s=2%
   sandbox sweep study.json --list
   sandbox sweep study.json --shard 2/8 --out /shared/study
   sandbox sweep study.json --merge --out /shared/study"#;
 
+/// Hides the options of `sandbox estimate`.
+fn hidden(option: Arg) -> Arg {
+    const OLD: [&str; 6] = [
+        "errors",
+        "bounds",
+        "runs",
+        "confidence",
+        "most_runs",
+        "most_minutes",
+    ];
+    let is_old = OLD.contains(&option.get_id().as_str());
+    option.hide(is_old)
+}
+
 #[derive(Args)]
+#[command(mut_args(hidden))]
 pub struct SweepOptions {
     /// The study: a JSON file with a scenario, settings, a grid or list of settings, and seeds; or the name of a
     /// built-in one, such as table1
@@ -92,7 +105,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let folder = folder.unwrap_or_else(|| PathBuf::from(&study.name));
     let store = Store::at(&folder);
     if options.error.is_given() {
-        return estimate(&study, &folder, options);
+        return estimate(&study, options);
     }
     if (options.list || options.shard.is_some()) && options.files.are_given() {
         let reason = "-o: the results are those of all cells; give it without --list and --shard, or with --merge";
@@ -124,28 +137,29 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     some_failed(&tally.failed, tally.jobs)
 }
 
-/// Makes as many runs for each combination of settings as the errors asked for need.
-fn estimate(study: &Study, folder: &Path, options: &SweepOptions) -> Result<(), Failure> {
+/// Estimates the rows of the study.
+fn estimate(study: &Study, options: &SweepOptions) -> Result<(), Failure> {
+    talk(
+        "note: `sandbox sweep STUDY --error …` is `sandbox estimate STUDY --error …` now; the old spelling works in \
+         this version only",
+    );
     let alone = options.shard.is_none() && !options.merge && !options.list;
     if !alone || !options.draw.is_empty() || !options.over.is_empty() {
-        return Err(Failure::Input(
-            "--error and --bound: the number of runs depends on their results; give them without --shard, --merge, \
-             --list, --draw and --over (several processes may run the same command with the same --out)"
-                .to_owned(),
-        ));
+        let reason = "--error and --bound: the number of runs depends on their results; give them without --shard, \
+                      --merge, --list, --draw and --over";
+        return Err(Failure::Input(reason.to_owned()));
     }
-    let questions = Questions::new(study, &options.error.request())?;
-    let names = questions.files();
-    let mut outputs = inputs(study, options, folder);
-    add_folder(&mut outputs, folder, &names);
-    outputs.may_replace(options.replace.force);
-    options.files.add_to(&mut outputs, &names);
-    outputs.check()?;
-    let store = Store::open(folder)?;
-    let answers = questions.answer(&store, &Watch::new())?;
-    let findings = answers.findings()?;
-    options.files.give(&findings, options.json, Some(folder))?;
-    all_reached(&answers)
+    of_rows(
+        study,
+        &Rows {
+            file: &options.file,
+            out: options.out.as_deref(),
+            error: &options.error,
+            files: &options.files,
+            force: options.replace.force,
+            json: options.json,
+        },
+    )
 }
 
 /// The files that the study reads, before its results in `folder`.

@@ -50,19 +50,19 @@ fn passages(runs: &[&RunResult], name: &str) -> Option<Curve> {
 
 /// The mean speed by density; `None` without the measurement.
 fn by_density(runs: &[&RunResult]) -> Option<Curve> {
-    let bins = runs.first()?.summary.metrics.keys().filter_map(|name| {
+    let found = runs.first()?.summary.metrics.keys().filter_map(|name| {
         let ends = name.strip_prefix("speed_at_")?.strip_suffix("_per_m2")?;
         let (low, high) = ends.split_once("_to_")?;
         let [low, high]: [f64; 2] = [low.parse().ok()?, high.parse().ok()?];
         Some((0.5 * (low + high), name))
     });
-    let mut bins: Vec<(f64, &String)> = bins.collect();
+    let mut bins: Vec<(f64, &String)> = found.collect();
     bins.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let values = runs.iter().map(|run| {
+    let of_runs = runs.iter().map(|run| {
         let value = |(_, name): &(f64, &String)| run.summary.metric(name);
         bins.iter().map(value).collect()
     });
-    let values: Vec<Vec<Option<f64>>> = values.collect();
+    let values: Vec<Vec<Option<f64>>> = of_runs.collect();
     let at: Vec<f64> = bins.iter().map(|(at, _)| *at).collect();
     let labels = ["density [P/m²]", "speed [m/s]"];
     let curve = Curve::of("speed by density".to_owned(), labels, &at, &values);
@@ -92,11 +92,11 @@ impl Curve {
         let at: Vec<f64> = (0..=POINTS)
             .map(|k| last * f64::from(k) / f64::from(POINTS))
             .collect();
-        let counts = times.iter().map(|times| {
+        let of_runs = times.iter().map(|times| {
             let until = |at: &f64| times.partition_point(|time| time <= at);
             at.iter().map(|at| Some(until(at) as f64)).collect()
         });
-        let counts: Vec<Vec<Option<f64>>> = counts.collect();
+        let counts: Vec<Vec<Option<f64>>> = of_runs.collect();
         let labels = ["time [s]", "passages"];
         Some(Self::of(name.to_owned(), labels, &at, &counts))
     }

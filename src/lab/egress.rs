@@ -75,8 +75,8 @@ impl Egress {
 
     /// The times of all people who have left, seconds, ascending.
     fn all(&self) -> Vec<f64> {
-        let times = self.exits.iter().flat_map(|(_, times)| times);
-        let mut times: Vec<f64> = times.copied().collect();
+        let all = self.exits.iter().flat_map(|(_, times)| times);
+        let mut times: Vec<f64> = all.copied().collect();
         times.sort_by(f64::total_cmp);
         times
     }
@@ -91,9 +91,9 @@ impl Egress {
             of,
             share: 100.0 * times.len() as f64 / all.len().max(1) as f64,
         };
-        let exits = self.exits.iter();
+        let named = self.exits.iter();
         let exits =
-            exits.map(|(name, times)| (name.as_str(), times.as_slice(), times.len() as u32));
+            named.map(|(name, times)| (name.as_str(), times.as_slice(), times.len() as u32));
         let whole = (ALL, all.as_slice(), self.entered);
         let rows: Vec<Row> = match self.exits.len() {
             1 => [whole].map(row).into(),
@@ -138,10 +138,10 @@ impl Egress {
         let x = Axis::linear("time [s]", [start, 1.02 * end]);
         let top = spanned([0.0, entered].into_iter())[1];
         let y = Axis::linear("people out", [0.0, top]);
-        let panel = Panel::new("", x, y, marks);
+        let plain = Panel::new("", x, y, marks);
         let panel = match self.exits.len() {
-            1 => panel,
-            _ => panel.with_legend(Corner::Beside),
+            1 => plain,
+            _ => plain.with_legend(Corner::Beside),
         };
         Sheet::new(title, 1, [420.0, 240.0], vec![panel])
     }

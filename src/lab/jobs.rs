@@ -6,6 +6,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::error::LabError;
+use runs::case::RunResult;
 use runs::error::StoreError;
 use runs::identity::Identity;
 use runs::job::{self, Job, Listener};
@@ -25,8 +26,10 @@ pub fn each<T: Send + Sync>(
         results[k].set(work(k)).ok();
         Ok::<(), StoreError>(())
     })?;
-    let results = results.into_iter();
-    Ok(results.filter_map(OnceLock::into_inner).collect())
+    Ok(results
+        .into_iter()
+        .filter_map(OnceLock::into_inner)
+        .collect())
 }
 
 /// The results of jobs that finished, by what they are results of.
@@ -54,6 +57,12 @@ impl Results<'_> {
     pub fn of<T: DeserializeOwned>(self, name: &str, key: &Identity) -> Result<T, LabError> {
         let result = self.0.result(key).map_err(LabError::Data)?;
         result.ok_or_else(|| LabError::missing(name, "result"))
+    }
+
+    /// The result of a run, or why it has none; `None` if it was not made.
+    pub fn outcome(self, key: &Identity) -> Option<Result<RunResult, String>> {
+        let failure = || Some(Err(self.0.failure(key)?.message));
+        self.0.result(key).transpose().or_else(failure)
     }
 }
 

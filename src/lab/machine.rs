@@ -69,13 +69,13 @@ pub fn main_memory() -> Option<u64> {
     let mut system = System::new();
     system.refresh_memory();
     let own = get_current_pid().ok();
-    let group = own.and_then(|own| {
+    let own_group = own.and_then(|own| {
         let only = ProcessesToUpdate::Some(&[own]);
         system.refresh_processes_specifics(only, false, ProcessRefreshKind::nothing());
         system.process(own).and_then(Process::cgroup_limits)
     });
     // In a container the process's group may lie outside of the mount, whose root is then the container's group.
-    let group = group.or_else(|| system.cgroup_limits());
+    let group = own_group.or_else(|| system.cgroup_limits());
     let limit = group.map_or(u64::MAX, |group| group.total_memory);
     Some(system.total_memory().min(limit)).filter(|&bytes| bytes > 0)
 }

@@ -10,8 +10,8 @@ use serde::Serialize;
 use sandbox::analysis::statistics::{MeanStd, shuffled};
 use sandbox::lab::error::LabError;
 use sandbox::lab::estimate::{
-    Goal, Hope, Limits, MOST_PREDICTED, Means, Offer, Prior, Question, QuestionError, Request,
-    Runs, Sampling, Series, Wanted, first_round, further, pilot, predicted,
+    Goal, Limits, MOST_PREDICTED, Means, Offer, Prior, Question, QuestionError, Request, Runs,
+    Sampling, Series, Wanted, first_round, further, pilot, predicted,
 };
 use sandbox::lab::jobs::each;
 use sandbox::runs::case::Source;
@@ -163,7 +163,6 @@ pub(super) fn question(file: &str, profile: &str, errors: &[&str]) -> Result<Que
             runs: usize::MAX,
             secs: None,
         },
-        costs: false,
     };
     let profile = Setting::of("profile", profile.into(), &format!("profile={profile}"));
     Question::new(Source::BuiltIn(file.into()), vec![profile], request, None).map_err(invalid)
@@ -183,7 +182,7 @@ struct Estimate {
 fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, LabError> {
     let question = runs.question;
     let wanted = &question.request.wanted[k];
-    let all = runs.series(k);
+    let all = runs.series(&wanted.name);
     let all = Series {
         steps: all.steps[finest..].to_vec(),
         values: all.values[finest..].to_vec(),
@@ -197,14 +196,11 @@ fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, 
     let Some((finest_mean, whole)) = at_steps.first().zip(all.means(&Prior::NONE)) else {
         return Err(LabError::missing(&question.title[0], &wanted.name));
     };
-    let reference = whole.reached(CONFIDENCE).0;
+    let reference = whole.reached(CONFIDENCE);
     let prior = &runs.priors[k];
-    let hope = Hope {
-        prior: prior.clone(),
-        tolerance: wanted.error,
-    };
-    let first = first_round(&[hope], offers, CONFIDENCE);
-    let first = first.unwrap_or_else(|| pilot(offers, question.start - finest));
+    let expected = Goal::expected(wanted.error, prior);
+    let known = expected.and_then(|goal| first_round(&[goal], offers, CONFIDENCE));
+    let first = known.unwrap_or_else(|| pilot(offers, question.start - finest));
     let of_pool = Pooled {
         all: &all,
         offers,
@@ -223,13 +219,9 @@ fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, 
     let mean = |of: &dyn Fn(&Estimate) -> f64| estimates.iter().map(of).sum::<f64>() / count;
     // The number of runs that is expected from these means, which a finished estimate or the whole pool has.
     let expected = |means: &Means| -> usize {
-        let goal = Goal {
-            means: means.clone(),
-            tolerance: wanted.error,
-        };
-        let limit = goal.means.limit();
+        let goal = Goal::new(wanted.error, means.clone());
         let asked = (CONFIDENCE, MOST_PREDICTED);
-        let (runs, _) = predicted(&[(goal, limit)], offers, first.clone(), asked);
+        let (runs, _) = predicted(&[goal], offers, first.clone(), asked);
         runs.iter().sum()
     };
     let is_right = |expected: usize, one: &Estimate| {
@@ -307,7 +299,7 @@ impl Pooled<'_> {
             let asked: Vec<usize> = asked.map(|(all, more)| all + more).collect();
             let is_finished = next.is_none();
             if is_finished || asked.iter().any(|&count| count > order.len()) {
-                let reached = means.reached(CONFIDENCE).0;
+                let reached = means.reached(CONFIDENCE);
                 let secs = counts.iter().zip(self.offers);
                 let secs = secs.map(|(count, offer)| *count as f64 * offer.secs);
                 return Estimate {
@@ -324,10 +316,7 @@ impl Pooled<'_> {
 
     /// The further runs of an estimate.
     fn next(&self, means: &Means, counts: &[usize]) -> Option<Vec<usize>> {
-        let goal = Goal {
-            means: means.clone(),
-            tolerance: self.wanted.error,
-        };
+        let goal = Goal::new(self.wanted.error, means.clone());
         let offers = self.offers.iter().zip(counts);
         let offers: Vec<Offer> = offers
             .map(|(offer, &runs)| Offer { runs, ..*offer })

@@ -61,8 +61,8 @@ pub fn knowledge(store: &Store, listener: &dyn Listener) -> Result<Knowledge, La
             let (runs, _) = pooled(&question, pool, store, listener)?;
             secs += runs.measured_secs();
             let results = question.names.iter().filter_map(|name| {
-                let means = runs.series_of(name).means(&Prior::NONE)?;
-                Known::of(&question.title, name, &means)
+                let means = runs.series(name).means(&Prior::NONE)?;
+                Known::of(&question, name, &means)
             });
             known.extend(results);
         }

@@ -133,9 +133,9 @@ impl Found {
             let [at_cost, at_error] = better(&compared, k);
             let at_cost = at_cost.map(|k| (k, "cost", self.precise(compared[k].1)));
             let at_error = at_error.map(|k| (k, "error", format!("{:.1} ms", compared[k].0)));
-            let beaten = at_cost.into_iter().chain(at_error);
-            let beaten = beaten.map(|(k, its, by)| format!("at its {its}: {} ({by})", named(k)));
-            let beaten: Vec<String> = beaten.collect();
+            let both = at_cost.into_iter().chain(at_error);
+            let named_as = both.map(|(k, its, by)| format!("at its {its}: {} ({by})", named(k)));
+            let beaten: Vec<String> = named_as.collect();
             let verdict = match beaten.is_empty() {
                 true => "on the front".to_owned(),
                 false => format!("beaten {}", beaten.join("; ")),

@@ -49,8 +49,8 @@ impl Lyapunov {
     /// # Errors
     /// The run fails.
     pub fn of(document: &Value) -> Result<Self, LabError> {
-        let all = (0..SHIFTS).map(|shift| distances(document, shift));
-        let all: Vec<_> = all.collect::<Result<_, _>>()?;
+        let pairs = (0..SHIFTS).map(|shift| distances(document, shift));
+        let all: Vec<_> = pairs.collect::<Result<_, _>>()?;
         let last = all.iter().filter_map(|distances| distances.last());
         Ok(Self {
             rates: all.iter().map(|distances| slope(distances)).collect(),
@@ -65,9 +65,9 @@ fn distances(document: &Value, shift: u32) -> Result<Vec<(f64, f64)>, LabError> 
         setting("precision", &json!("double"))?,
         setting("time_step_secs", &json!(0.005))?,
     ];
-    let one = simulation(document, &settings)?;
-    let start = continued(document, &one, |_, _, _| ());
-    let moved = continued(document, &one, |id, position, _| {
+    let first = simulation(document, &settings)?;
+    let start = continued(document, &first, |_, _, _| ());
+    let moved = continued(document, &first, |id, position, _| {
         let (sine, cosine) = (TAU * (f64::from(id + 1009 * shift) * GOLDEN).fract()).sin_cos();
         *position += SHIFT * Vector::new(cosine, sine);
     });
@@ -100,9 +100,9 @@ fn distance(one: &Simulation, other: &Simulation) -> f64 {
 
 /// Slope of the logarithm of distances over time, by least squares.
 fn slope(distances: &[(f64, f64)]) -> f64 {
-    let points = distances.iter().copied();
-    let points = points.filter(|&(time, d)| time >= FIT_FROM && d > 0.0);
-    let points: Vec<(f64, f64)> = points.map(|(time, d)| (time, d.ln())).collect();
+    let all = distances.iter().copied();
+    let later = all.filter(|&(time, d)| time >= FIT_FROM && d > 0.0);
+    let points: Vec<(f64, f64)> = later.map(|(time, d)| (time, d.ln())).collect();
     Line::through(&points).map_or(f64::NAN, |line| line.slope)
 }
 

@@ -19,8 +19,8 @@ pub fn sheet(found: &Found) -> Sheet {
         Kind::Statistics => (0..found.quantities.len()).collect(),
     };
     let columns = quantities.len().div_ceil(2).max(1);
-    let panels = quantities.into_iter().map(|k| panel(found, k, costs));
-    let panels = with_legend(panels.collect(), columns);
+    let drawn = quantities.into_iter().map(|k| panel(found, k, costs));
+    let panels = with_legend(drawn.collect(), columns);
     let title = format!("{}: {}", found.scene.name, found.scene.about());
     Sheet::new(&title, columns, [225.0, 195.0], panels)
 }
@@ -31,8 +31,8 @@ fn panel(found: &Found, quantity: usize, costs: [f64; 2]) -> Panel {
         let bound = point.errors[quantity]?.bound();
         (bound > 0.0).then_some([point.cost.median, bound])
     };
-    let errors = found.points.iter().filter_map(place).map(|at| at[1]);
-    let errors = positive(errors, ENDS);
+    let heights = found.points.iter().filter_map(place).map(|at| at[1]);
+    let errors = positive(heights, ENDS);
     let knobs = found.points.chunk_by(|a, b| a.trial.shares_curve(&b.trial));
     let mut marks = Vec::new();
     for (number, knob) in knobs.enumerate() {
@@ -42,8 +42,8 @@ fn panel(found: &Found, quantity: usize, costs: [f64; 2]) -> Panel {
             marks.extend(curve(points, style, 2.6));
         }
     }
-    let default = found.points.iter().find(|point| point.trial.is_default);
-    let default = default.and_then(place);
+    let point = found.points.iter().find(|point| point.trial.is_default);
+    let default = point.and_then(place);
     marks.extend(default.map(|at| Mark::dots([at], Style::broken(BLACK, 6.0, "default"))));
     let shown = &found.quantities[quantity];
     let x = Axis::log("cost [ms per simulated second]", costs);

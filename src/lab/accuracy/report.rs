@@ -66,8 +66,8 @@ impl Report {
         let mut rows = Vec::new();
         for found in &self.scenes {
             for point in &found.points {
-                let errors = found.quantities.iter().zip(&point.errors);
-                let errors = errors.filter_map(|(quantity, error)| Some((quantity, (*error)?)));
+                let all = found.quantities.iter().zip(&point.errors);
+                let errors = all.filter_map(|(quantity, error)| Some((quantity, (*error)?)));
                 rows.extend(errors.map(|(quantity, error)| (found, point, quantity, error)));
             }
         }

@@ -20,8 +20,8 @@ pub(super) fn judge<'a>(
     reference: &[Summary],
     notes: String,
 ) -> Judged {
-    let metrics = reference.first().map(|run| &run.metrics);
-    let metrics = || metrics.into_iter().flat_map(|metrics| metrics.keys());
+    let first = reference.first().map(|run| &run.metrics);
+    let metrics = || first.into_iter().flat_map(|metrics| metrics.keys());
     let single = METRICS.into_iter().filter_map(|(metric, name, unit)| {
         let metric = metrics().find(|measured| *measured == metric)?;
         Some(((name, unit), vec![metric]))

@@ -56,13 +56,13 @@ struct Task {
 /// # Errors
 /// A run or a file fails.
 pub fn accuracy(plan: &Plan, store: &Store, listener: &dyn Listener) -> Result<Report, LabError> {
-    let tasks = plan.scenes.iter().map(|&scene| Task::new(scene, plan));
-    let tasks = tasks.collect::<Result<Vec<Task>, _>>()?;
-    let jobs: Vec<Vec<Job>> = tasks.iter().map(Task::jobs).collect();
-    let jobs: Vec<Job> = jobs.into_iter().flatten().collect();
+    let prepared = plan.scenes.iter().map(|&scene| Task::new(scene, plan));
+    let tasks = prepared.collect::<Result<Vec<Task>, _>>()?;
+    let of_tasks: Vec<Vec<Job>> = tasks.iter().map(Task::jobs).collect();
+    let jobs: Vec<Job> = of_tasks.into_iter().flatten().collect();
     let results = results(&jobs, store, listener)?;
-    let found = tasks.iter().map(|task| task.finish(results, listener));
-    let found = found.collect::<Result<Vec<Found>, _>>()?;
+    let finished = tasks.iter().map(|task| task.finish(results, listener));
+    let found = finished.collect::<Result<Vec<Found>, _>>()?;
     Ok(Report {
         scenes: found,
         quick: plan.quick,
@@ -149,8 +149,8 @@ impl Task {
             Kind::Motion => 0.0,
             Kind::Statistics => DENSE_AT,
         };
-        let costs = cost::measure(&self.document, from, settings.values().copied(), turns)?;
-        let costs: BTreeMap<&usize, Range> = settings.keys().zip(costs).collect();
+        let measured = cost::measure(&self.document, from, settings.values().copied(), turns)?;
+        let costs: BTreeMap<&usize, Range> = settings.keys().zip(measured).collect();
         let points = trials.zip(judged.errors).map(|(trial, errors)| Point {
             trial: trial.clone(),
             cost: costs[&trial.entry],

@@ -92,11 +92,11 @@ fn snapshot(simulation: &Simulation) -> Snapshot {
 /// Root mean square differences of position, velocity and density, over all agents that are in both.
 fn distance(one: &Snapshot, other: &Snapshot) -> [f64; 3] {
     let pairs = one.iter().filter_map(|(id, a)| Some((a, other.get(id)?)));
-    let squares = pairs.map(|(a, b)| {
+    let differences = pairs.map(|(a, b)| {
         let [position, velocity] = [a.0 - b.0, a.1 - b.1].map(|off| off.norm_squared());
         [position, velocity, (a.2 - b.2).powi(2)]
     });
-    let squares: Vec<[f64; 3]> = squares.collect();
+    let squares: Vec<[f64; 3]> = differences.collect();
     let sum = |k: usize| squares.iter().map(|squares| squares[k]).sum::<f64>();
     [0, 1, 2].map(|k| (sum(k) / squares.len().max(1) as f64).sqrt())
 }

@@ -4,10 +4,10 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::bounds::Bounded;
-use super::costs::{Cost, OfPreset, Timed};
 use super::limit::Limit;
+use super::plan::Goal;
 use super::run::Runs;
-use super::series::Reached;
+use super::series::{Reached, Series};
 use super::validated::Validated;
 use super::wanted::Wanted;
 use analysis::statistics::{MeanStd, Share};
@@ -42,9 +42,6 @@ pub struct Row {
     pub missing: usize,
     /// What the default settings would give: the preset `paper`.
     pub default: OfPreset,
-    /// What each preset would give, if its runs were timed.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub presets: Vec<OfPreset>,
     /// What the means at other steps are expected to be.
     #[serde(skip)]
     pub limit: Limit,
@@ -65,6 +62,35 @@ pub struct AtStep {
     pub error_of_step: f64,
     /// The values in the order of the seeds.
     pub values: Vec<Option<f64>>,
+}
+
+/// Runs with a preset.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Timed {
+    /// The preset.
+    pub preset: Preset,
+    /// Its time step, seconds.
+    pub step: f64,
+    /// The mean time of a run, seconds on one core.
+    pub secs: f64,
+}
+
+/// What runs with a preset alone would give for a result. The error of the step is known from the runs of the estimate:
+/// without these, it would not be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct OfPreset {
+    /// The preset, and the time of a run.
+    #[serde(flatten)]
+    pub timed: Timed,
+    /// The error of the step in the mean.
+    pub error_of_step: f64,
+    /// Half the width of the interval that the chance of a single run gives.
+    pub chance: f64,
+    /// The number of runs for the same error, if the error of the step is known; `None` if that alone is larger.
+    pub runs: Option<f64>,
+    /// The number of runs at this step and at half of it for the same error, if the error of the step is found from
+    /// them: 2 y(h/2) − y(h), right for errors of first order, has the variance 5 σ² / n.
+    pub runs_at_two_steps: f64,
 }
 
 /// The answer.
@@ -92,9 +118,6 @@ pub struct Answer {
     pub runs: Counts,
     /// The computing time of all runs, seconds on one core.
     pub secs: f64,
-    /// What the errors of all results would cost with each preset, if its runs were timed.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub costs: Vec<Cost>,
     /// What is known of the error of the model; empty if it was not looked up.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub validation: Vec<Validated>,
@@ -118,13 +141,13 @@ pub struct Counts {
 impl Counts {
     /// The counts that a reader should know of, each with its name.
     pub fn notable(&self) -> impl Iterator<Item = (&'static str, Share)> {
-        let counts = [
+        let named = [
             ("failed", self.failed),
             ("had stuck agents at the end", self.stuck),
             ("ended because no agent arrived for some time", self.idle),
         ];
         let all = self.all;
-        let counts = counts.into_iter().filter(|(_, count)| *count > 0);
+        let counts = named.into_iter().filter(|(_, count)| *count > 0);
         counts.map(move |(name, count)| (name, Share::of(count, all)))
     }
 }
@@ -135,22 +158,17 @@ impl Answer {
         let question = runs.question;
         let results = runs.all_results();
         let finished = || results.clone().flatten();
-        let wanted = question.request.wanted.iter().enumerate();
-        let rows: Vec<Row> = wanted
-            .clone()
-            .filter_map(|(k, wanted)| Row::of(runs, k, wanted))
-            .collect();
-        let bounds = question.request.bounds.iter();
-        let bounds: Vec<Bounded> = bounds.map(|bound| runs.bounded(bound)).collect();
-        let without = wanted.filter(|(k, _)| runs.series(*k).means(&runs.priors[*k]).is_none());
-        let without = without.map(|(_, wanted)| runs.without_values(&wanted.name));
-        let unbounded = bounds.iter().filter(|bound| bound.is_lost());
-        let unbounded = unbounded.map(|bound| format!("{}: {}", bound.name, bound.lost()));
-        let without = without.chain(unbounded).collect();
-        let of_presets = || rows.iter().flat_map(|row| &row.presets);
-        let costs = runs.timed.iter();
-        let costs = costs.map(|&timed| Cost::of_all(of_presets(), timed));
-        let costs = costs.collect();
+        let wanted = question.request.wanted.iter().zip(&runs.wanted);
+        let rows = wanted.clone().filter_map(|(wanted, (series, goal))| {
+            Some(Row::of(runs, wanted, series, goal.as_ref()?))
+        });
+        let asked = question.request.bounds.iter();
+        let bounds: Vec<Bounded> = asked.map(|bound| runs.bounded(bound)).collect();
+        let missing = wanted.filter(|(_, (_, goal))| goal.is_none());
+        let valueless = missing.map(|(wanted, _)| runs.without_values(&wanted.name));
+        let lost = bounds.iter().filter(|bound| bound.is_lost());
+        let unbounded = lost.map(|of| format!("{}: {}", of.bound.name, of.lost()));
+        let is_idle = |end| end == Some(End::Idle);
         let [scenario, profile] = question.title.clone();
         Self {
             scenario,
@@ -158,19 +176,16 @@ impl Answer {
             settings: question.settings.clone(),
             confidence: question.request.confidence,
             first_seed: question.first_seed,
-            results: rows,
-            without,
+            results: rows.collect(),
+            without: valueless.chain(unbounded).collect(),
             bounds,
             runs: Counts {
                 all: results.clone().count(),
                 failed: results.clone().filter(|result| result.is_err()).count(),
-                stuck: finished().filter(|result| result.summary.stuck > 0).count(),
-                idle: finished()
-                    .filter(|result| result.summary.end == Some(End::Idle))
-                    .count(),
+                stuck: finished().filter(|run| run.summary.stuck > 0).count(),
+                idle: finished().filter(|run| is_idle(run.summary.end)).count(),
             },
             secs: runs.measured_secs(),
-            costs,
             validation: Vec::new(),
             stopped: runs.stopped.clone(),
         }
@@ -188,49 +203,73 @@ impl Answer {
 }
 
 impl Row {
-    fn of(runs: &Runs, k: usize, wanted: &Wanted) -> Option<Self> {
-        let series = runs.series(k);
-        let means = series.means(&runs.priors[k])?;
+    fn of(runs: &Runs, wanted: &Wanted, series: &Series, goal: &Goal) -> Self {
+        let Goal { means, limit, .. } = goal;
         let confidence = runs.question.request.confidence;
-        let (reached, limit) = means.reached(confidence);
-        let levels = runs.levels.iter().zip(&series.values);
-        let steps = levels.filter_map(|(level, values)| {
+        let reached = goal.reached(confidence);
+        let levels = series.steps.iter().zip(&series.values);
+        let steps = levels.filter_map(|(&step, values)| {
             let known: Vec<f64> = values.iter().flatten().copied().collect();
             let of = MeanStd::of(&known)?;
             Some(AtStep {
-                step: level.rung.step,
+                step,
                 runs: of.count,
                 mean: of.mean,
                 deviation: of.std(),
-                error_of_step: limit.error_at(level.rung.step),
+                error_of_step: limit.error_at(step),
                 values: values.clone(),
             })
         });
-        let of = |timed| OfPreset::of(timed, &means, &limit, (reached, confidence));
+        let deviation = means.variance.sqrt();
         let default = Timed {
             preset: Preset::Paper,
             step: PAPER_TIME_STEP,
             secs: secs_at(runs, PAPER_TIME_STEP),
         };
-        let presets: Vec<OfPreset> = runs.timed.iter().copied().map(of).collect();
-        let missing = series
-            .values
-            .iter()
-            .flatten()
-            .filter(|value| value.is_none());
-        Some(Self {
+        let chance = means.width(confidence) * deviation;
+        let values = series.values.iter().flatten();
+        Self {
             name: wanted.name.clone(),
             reached,
             wanted: wanted.error.to_string(),
             is_reached: reached.error <= wanted.error.of(reached.value),
             order: limit.order,
-            deviation: means.variance.sqrt(),
-            limit: limit.clone(),
+            deviation,
             steps: steps.collect(),
-            missing: missing.count(),
-            default: presets.first().copied().unwrap_or_else(|| of(default)),
-            presets,
-        })
+            missing: values.filter(|value| value.is_none()).count(),
+            default: OfPreset::new(default, limit, [chance, reached.error]),
+            limit: limit.clone(),
+        }
+    }
+
+    /// The number of runs with a value.
+    pub(super) fn runs(&self) -> usize {
+        self.steps.iter().map(|at| at.runs).sum()
+    }
+}
+
+impl OfPreset {
+    /// For the error that a result has.
+    pub fn of(timed: Timed, row: &Row) -> Self {
+        Self::new(timed, &row.limit, [row.default.chance, row.reached.error])
+    }
+
+    fn new(timed: Timed, limit: &Limit, [chance, error]: [f64; 2]) -> Self {
+        let error_of_step = limit.error_at(timed.step);
+        let room = error.powi(2) - error_of_step.powi(2);
+        Self {
+            timed,
+            error_of_step,
+            chance,
+            runs: (room > 0.0).then(|| (chance * chance / room).max(1.0)),
+            runs_at_two_steps: (5.0 * (chance / error).powi(2)).max(2.0),
+        }
+    }
+
+    /// The error of the mean of this number of runs: from chance, which falls with their number, and the step, which
+    /// does not.
+    pub fn error(&self, runs: f64) -> f64 {
+        (self.chance / runs.sqrt()).hypot(self.error_of_step)
     }
 }
 

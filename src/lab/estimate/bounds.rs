@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::run::{Runs, StepRuns};
-use super::sample::Sample;
+use super::run::{Runs, Sample};
 use super::wanted::{Bound, IMO_RUNS, Sampling};
 use crate::error::LabError;
+use crate::jobs::each;
 use crate::sweep::number;
 use analysis::round;
 use analysis::statistics::probability_above;
@@ -19,10 +19,9 @@ const REPETITIONS: usize = 5;
 /// A bound on most runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bounded {
-    /// The name of the result.
-    pub name: String,
-    /// The share of runs that are at most the value.
-    pub share: f64,
+    /// The result and the share of runs.
+    #[serde(flatten)]
+    pub bound: Bound,
     /// The bound; `None` if there are no runs with this rank, or if that run has no value.
     pub value: Option<f64>,
     /// The rank of the value: 1 is the smallest of all runs.
@@ -44,16 +43,6 @@ pub struct Bounded {
 }
 
 impl Bounded {
-    /// Whether the bound is above most runs.
-    pub fn is_upper(&self) -> bool {
-        self.share >= 0.5
-    }
-
-    /// The share of runs on the inner side of the bound.
-    pub fn inner(&self) -> f64 {
-        self.share.max(1.0 - self.share)
-    }
-
     /// Whether there were enough runs, but the run with the bound's rank has no value.
     pub fn is_lost(&self) -> bool {
         self.value.is_none() && self.rank.is_some()
@@ -61,9 +50,9 @@ impl Bounded {
 
     /// Why it is.
     pub fn lost(&self) -> String {
-        let (side, share) = match self.is_upper() {
-            true => ("above", self.inner()),
-            false => ("below", 1.0 - self.inner()),
+        let (side, share) = match self.bound.is_upper() {
+            true => ("above", self.bound.inner()),
+            false => ("below", 1.0 - self.bound.inner()),
         };
         format!(
             "{} of {} runs have no value and count as {side} all others, so no bound holds for {} % of runs; \
@@ -87,75 +76,76 @@ impl Runs<'_> {
         listener: &dyn Listener,
     ) -> Result<(), LabError> {
         let question = self.question;
-        let (request, start) = (&question.request, question.start);
+        let request = &question.request;
         if request.sampling == Sampling::Imo {
-            if request.limits.runs < IMO_RUNS {
-                self.stopped = Some(format!("at most {} runs were allowed", request.limits.runs));
-                return Ok(());
-            }
-            let repetitions = if question.is_behavior_random {
-                REPETITIONS
-            } else {
-                1
-            };
-            let rung = question.rungs[start];
-            let results = self.results_of(
-                IMO_RUNS,
-                &|k| {
-                    let [population, repetition] = [k / repetitions, k % repetitions];
-                    let case = question.of_population(rung, population, repetition)?;
-                    let name = format!("population {}, run {}", population + 1, repetition + 1);
-                    Ok((case, name))
-                },
-                store,
-                listener,
-            )?;
-            self.sample = Some(Sample {
-                results,
-                repetitions,
-            });
-            return Ok(());
+            return self.make_sample(store, listener);
         }
         let needed = request.bounds.iter().map(|bound| request.runs_for(bound));
         let mut wanted = vec![0; self.levels.len()];
-        wanted[start] = needed.max().unwrap_or(0);
+        wanted[question.start] = needed.max().unwrap_or(0);
         self.stopped = self.cut(&mut wanted, elapsed);
         self.make(&wanted, store, listener)
+    }
+
+    /// Makes the runs of IMO's guidelines.
+    fn make_sample(&mut self, store: &Store, listener: &dyn Listener) -> Result<(), LabError> {
+        let question = self.question;
+        let most = question.request.limits.runs;
+        if most < IMO_RUNS {
+            self.stopped = Some(format!("at most {most} runs were allowed"));
+            return Ok(());
+        }
+        let repetitions = match question.is_behavior_random {
+            true => REPETITIONS,
+            false => 1,
+        };
+        let rung = question.rungs[question.start];
+        let case = |k: usize| {
+            let [population, repetition] = [k / repetitions, k % repetitions];
+            let case = question.of_population(rung, population, repetition)?;
+            let name = format!("population {}, run {}", population + 1, repetition + 1);
+            Ok((case, name))
+        };
+        let results = self.results_of(each(IMO_RUNS, case)?, store, listener)?;
+        self.sample = Some(Sample {
+            results,
+            repetitions,
+        });
+        Ok(())
     }
 
     /// What they say.
     pub(super) fn bounded(&self, bound: &Bound) -> Bounded {
         let question = self.question;
-        let level: &StepRuns = &self.levels[question.start];
-        let confidence = question.request.confidence;
-        // Further runs were made for errors of means, and their number depends on the values: a bound from all runs
-        // would hold with another probability.
-        let own = level.results.len().min(bound.runs(confidence));
+        let level = &self.levels[question.start];
         let (results, repetitions) = match &self.sample {
             Some(sample) => (&sample.results[..], sample.repetitions),
-            None => (&level.results[..own], 1),
+            None => {
+                // Further runs were made for errors of means, and their number depends on the values: a bound from all
+                // runs would hold with another probability.
+                let needed = bound.runs(question.request.confidence);
+                (&level.results[..level.results.len().min(needed)], 1)
+            }
         };
         let value = |result: &Result<RunResult, String>| number(result.as_ref().ok()?, &bound.name);
         let values: Vec<Option<f64>> = results.iter().map(value).collect();
         let all = values.len();
-        let rank = match self.sample {
+        let inner = match self.sample {
             // The value is selected for which this share of the ranked values are lower.
             Some(_) => (bound.inner() * all as f64).ceil() as usize + 1,
             None => all,
         };
-        let rank = Some(rank).filter(|rank| (1..=all).contains(rank));
-        let holds = rank.filter(|_| repetitions == 1);
-        let holds = holds.map(|rank| probability_above(rank, all, bound.inner()));
-        let (value, rank) = ranked(&values, rank, bound.is_upper());
+        let place = Some(inner).filter(|place| (1..=all).contains(place));
+        let independent = place.filter(|_| repetitions == 1);
+        let (value, rank) = ranked(&values, place, bound.is_upper());
         Bounded {
-            name: bound.name.clone(),
-            share: bound.share,
+            bound: bound.clone(),
             value,
             rank,
             runs: all,
             missing: values.iter().filter(|value| value.is_none()).count(),
             needed: question.request.runs_for(bound),
-            confidence: holds,
+            confidence: independent.map(|place| probability_above(place, all, bound.inner())),
             populations: [all / repetitions, repetitions],
             step: level.rung.step,
             values,

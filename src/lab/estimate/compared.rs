@@ -160,8 +160,10 @@ fn paired(a: &Row, b: &Row, confidence: f64) -> Option<Reached> {
         let Some(other) = b.steps.iter().find(|other| other.step == one.step) else {
             continue;
         };
-        let both = one.values.iter().zip(&other.values);
-        let both: Vec<(f64, f64)> = both.filter_map(|(x, y)| Some(((*x)?, (*y)?))).collect();
+        let pairs_of_step = one.values.iter().zip(&other.values);
+        let both: Vec<(f64, f64)> = pairs_of_step
+            .filter_map(|(x, y)| Some(((*x)?, (*y)?)))
+            .collect();
         pairs += both.len();
         steps.push(one.step);
         all[0].push(both.iter().map(|(x, _)| Some(*x)).collect());
@@ -177,7 +179,7 @@ fn paired(a: &Row, b: &Row, confidence: f64) -> Option<Reached> {
         Series { steps, values }.means(&Prior::NONE)
     });
     let (x, y, difference) = (x?, y?, difference?);
-    (difference.variance < x.variance + y.variance).then(|| difference.reached(confidence).0)
+    (difference.variance < x.variance + y.variance).then(|| difference.reached(confidence))
 }
 
 impl Compared {

@@ -101,33 +101,9 @@ impl Limit {
             mean: (level.mean - origin) / unit,
             ..*level
         });
-        let levels: &[Level] = &scaled.collect::<Vec<_>>();
+        let levels: Vec<Level> = scaled.collect();
         let spread = (LEAST_SPREAD * origin.abs() / unit).max(1.0);
-        let mut logs = Vec::new();
-        let mut components = Vec::new();
-        let (weight, range) = TOO_LONG;
-        let apart = levels.split_last().filter(|(_, others)| others.len() > 1);
-        // The last level's share in how likely the data are.
-        let (belongs, free) = apart.map_or((0.0, None), |(last, others)| {
-            let runs = last.runs as f64;
-            let density = 0.5 * (runs / TAU).ln() - 0.5 * runs * last.mean * last.mean;
-            let free = f64::ln(weight / (range * spread));
-            (f64::ln(1.0 - weight) + density, Some((free, others)))
-        });
-        for used in [Some((belongs, levels)), free].into_iter().flatten() {
-            for (order, likely) in ORDERS {
-                for (size, prior) in SIZES.into_iter().zip(shares) {
-                    let of = component(used.1, order, size * spread);
-                    logs.push(used.0 + of.0 + f64::ln(likely * prior));
-                    components.push(of.1);
-                }
-            }
-        }
-        let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let sum: f64 = logs.iter().map(|log| (log - most).exp()).sum();
-        for (component, log) in components.iter_mut().zip(&logs) {
-            component.weight = (log - most).exp() / sum;
-        }
+        let components = mixture(&levels, spread, shares);
         let mean = |of: &dyn Fn(&Component) -> f64| -> f64 {
             components.iter().map(|c| c.weight * of(c)).sum()
         };
@@ -138,19 +114,17 @@ impl Limit {
         let from_seeds = levels.iter().enumerate().map(|(k, level)| {
             mean(&|c| c.shares.get(k).copied().unwrap_or(0.0)).powi(2) / level.runs as f64
         });
+        let in_unit_of_values = |c: &Component| Component {
+            value: origin + unit * c.value,
+            error: unit * c.error,
+            ..c.clone()
+        };
         Self {
             value: origin + unit * value,
             variance: unit * unit * (spread_of_value + unmodeled.powi(2)),
             from_seeds: unit * unit * from_seeds.sum::<f64>(),
             order: mean(&|c| c.order),
-            components: components
-                .iter()
-                .map(|c| Component {
-                    value: origin + unit * c.value,
-                    error: unit * c.error,
-                    ..c.clone()
-                })
-                .collect(),
+            components: components.iter().map(in_unit_of_values).collect(),
         }
     }
 
@@ -188,6 +162,36 @@ impl Component {
     }
 }
 
+/// The posteriors for all orders and sizes, with their weights: of all levels, and of all but the coarsest of three or
+/// more. The standard deviation of runs is 1, sizes are in units of `spread`.
+fn mixture(levels: &[Level], spread: f64, shares: &[f64; SIZES.len()]) -> Vec<Component> {
+    let (weight, range) = TOO_LONG;
+    let apart = levels.split_last().filter(|(_, others)| others.len() > 1);
+    // The last level's share in how likely the data are.
+    let (belongs, free) = apart.map_or((0.0, None), |(last, others)| {
+        let runs = last.runs as f64;
+        let density = 0.5 * (runs / TAU).ln() - 0.5 * runs * last.mean * last.mean;
+        let free = f64::ln(weight / (range * spread));
+        (f64::ln(1.0 - weight) + density, Some((free, others)))
+    });
+    let (mut logs, mut components) = (Vec::new(), Vec::new());
+    for (log, used) in [Some((belongs, levels)), free].into_iter().flatten() {
+        for (order, likely) in ORDERS {
+            for (size, prior) in SIZES.into_iter().zip(shares) {
+                let (of_data, component) = component(used, order, size * spread);
+                logs.push(log + of_data + f64::ln(likely * prior));
+                components.push(component);
+            }
+        }
+    }
+    let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let sum: f64 = logs.iter().map(|log| (log - most).exp()).sum();
+    for (component, log) in components.iter_mut().zip(&logs) {
+        component.weight = (log - most).exp() / sum;
+    }
+    components
+}
+
 /// The posterior for this order, and a standard deviation `size` of β; and the logarithm of how likely they make the
 /// data. The standard deviation of runs is 1.
 fn component(levels: &[Level], order: f64, size: f64) -> (f64, Component) {
@@ -198,29 +202,25 @@ fn component(levels: &[Level], order: f64, size: f64) -> (f64, Component) {
         .map(|level| (level.step / REFERENCE_STEP).powf(order))
         .collect();
     let weights = || levels.iter().map(|level| level.runs as f64).zip(&x);
+    let means = || levels.iter().map(|level| level.mean);
     let free = 1.0 / (size * size);
     let a: f64 = weights().map(|(weight, _)| weight).sum();
     let d = free + weights().map(|(weight, x)| weight * x * x).sum::<f64>();
     let middle = weights().map(|(weight, x)| weight * x).sum::<f64>() / a;
     let apart = weights().map(|(weight, x)| weight * (x - middle).powi(2));
     let determinant = a * (free + apart.sum::<f64>());
-    let shares = levels.iter().zip(&x).map(|(level, own)| {
+    let share = |(weight, own): (f64, &f64)| {
         let others = weights().map(|(weight, x)| weight * x * (x - own));
-        (free + others.sum::<f64>()) / determinant * level.runs as f64
-    });
-    let shares: Vec<f64> = shares.collect();
-    let means = || levels.iter().map(|level| level.mean);
-    let value: f64 = shares
-        .iter()
-        .zip(means())
-        .map(|(share, mean)| share * mean)
-        .sum();
-    let errors = weights().zip(means());
-    let error = errors.map(|((weight, x), mean)| weight * (x - middle) * mean);
-    let error = a * error.sum::<f64>() / determinant;
-    let fitted = weights().zip(means());
-    let fitted = fitted.map(|((weight, x), mean)| weight * mean * (value + x * error));
-    let log = 0.5 * fitted.sum::<f64>() - 0.5 * (size * size * determinant).ln();
+        (free + others.sum::<f64>()) / determinant * weight
+    };
+    let shares: Vec<f64> = weights().map(share).collect();
+    let parts = shares.iter().zip(means());
+    let value: f64 = parts.map(|(share, mean)| share * mean).sum();
+    let off = |((weight, x), mean): ((f64, &f64), f64)| weight * (x - middle) * mean;
+    let error = a * weights().zip(means()).map(off).sum::<f64>() / determinant;
+    let fit = |((weight, x), mean): ((f64, &f64), f64)| weight * mean * (value + x * error);
+    let fitted: f64 = weights().zip(means()).map(fit).sum();
+    let log = 0.5 * fitted - 0.5 * (size * size * determinant).ln();
     let component = Component {
         weight: 0.0,
         order,

@@ -5,10 +5,9 @@
 //! and that of the time step, from the means at different steps (`limit.rs`). `plan.rs` chooses which runs come next.
 
 mod answer;
-mod begin;
 mod bounds;
 mod compared;
-mod costs;
+mod cut;
 mod forecast;
 mod known;
 mod limit;
@@ -20,24 +19,21 @@ mod report;
 mod row_pictures;
 mod rows;
 mod run;
-mod sample;
 mod series;
 mod validated;
 mod wanted;
 
-pub use answer::{ABOUT, Answer, AtStep, Counts, Row};
+pub use answer::{ABOUT, Answer, AtStep, Counts, OfPreset, Row, Timed};
 pub use bounds::Bounded;
 pub use compared::{Change, Compared, compared, is_answer};
-pub use costs::{Cost, OfPreset, Timed};
 pub use forecast::Forecast;
 pub use limit::{Level, Limit};
-pub use plan::{Goal, Hope, MOST_PREDICTED, Offer, first_round, further, pilot, predicted};
-pub use prior::{Known, Prior};
+pub use plan::{Goal, MOST_PREDICTED, Offer, first_round, further, pilot, predicted};
+pub use prior::{Known, Prior, Quantity};
 pub use question::{Question, QuestionError, Rung};
 pub use report::names;
 pub use rows::{Answers, Questions};
-pub use run::{Look, Runs, run};
-pub use sample::Sample;
+pub use run::{Look, Runs, Sample, StepRuns, run};
 pub use series::{Means, Reached, Series};
 pub use validated::Validated;
 pub use wanted::{Bound, Limits, Request, Sampling, Tolerance, Wanted};

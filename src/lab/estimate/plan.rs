@@ -7,7 +7,7 @@
 
 use super::limit::Limit;
 use super::prior::Prior;
-use super::series::Means;
+use super::series::{Means, Reached};
 use super::wanted::Tolerance;
 
 /// The runs of the first round at each of its two steps, if nothing is known before.
@@ -30,23 +30,53 @@ pub struct Offer {
     pub runs: usize,
 }
 
-/// A measurement with the error asked for.
+/// A wanted result with what is known of it.
+#[derive(Debug, Clone)]
 pub struct Goal {
-    /// Its runs so far.
-    pub means: Means,
     /// The error asked for.
     pub tolerance: Tolerance,
+    /// Its runs so far.
+    pub means: Means,
+    /// Their limit of fine steps, by which the means of further runs are expected.
+    pub limit: Limit,
+}
+
+impl Goal {
+    /// From runs.
+    pub fn new(tolerance: Tolerance, means: Means) -> Self {
+        let limit = means.limit();
+        Self {
+            tolerance,
+            means,
+            limit,
+        }
+    }
+
+    /// Before the first run: the value is 1. `None` if no spread is known, or if the error is asked for in the result's
+    /// unit.
+    pub fn expected(tolerance: Tolerance, prior: &Prior) -> Option<Self> {
+        let means = Means::expected(prior)?;
+        let limit = Limit::exact(1.0);
+        matches!(tolerance, Tolerance::Relative(_)).then_some(Self {
+            tolerance,
+            means,
+            limit,
+        })
+    }
+
+    /// The value with its errors.
+    pub fn reached(&self, confidence: f64) -> Reached {
+        self.means.errors(&self.limit, confidence)
+    }
 }
 
 /// The number of further runs at each of `offers`, which are in order from the finest to the coarsest step; `None` if
 /// all goals are reached.
 pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<usize>> {
     let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
-    let expected: Vec<Limit> = goals.iter().map(|goal| goal.means.limit()).collect();
     let excess = |plan: &[usize]| -> f64 {
-        let goals = goals.iter().zip(&expected);
-        let after = goals.map(|(goal, expected)| {
-            let after = goal.means.with(expected, &steps, plan);
+        let after = goals.iter().map(|goal| {
+            let after = goal.means.with(&goal.limit, &steps, plan);
             after.excess(goal.tolerance, confidence)
         });
         after.sum()
@@ -59,11 +89,8 @@ pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<
     // A step that is finer than half of the finest one so far is left to the next plan.
     let tried = offers.iter().position(|offer| offer.runs > 0);
     let first = tried.unwrap_or(0).saturating_sub(1);
-    let most = offers
-        .iter()
-        .map(|offer| offer.runs)
-        .sum::<usize>()
-        .max(FEW);
+    let runs: usize = offers.iter().map(|offer| offer.runs).sum();
+    let most = runs.max(FEW);
     while plan.iter().sum::<usize>() < most {
         let choices = (first..offers.len()).map(|k| {
             let runs = offers[k].runs + plan[k];
@@ -92,24 +119,6 @@ pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<
     Some(plan)
 }
 
-/// A result before its first run.
-#[derive(Debug, Clone)]
-pub struct Hope {
-    /// What is known about it.
-    pub prior: Prior,
-    /// The error asked for.
-    pub tolerance: Tolerance,
-}
-
-impl Hope {
-    /// As a goal whose value is 1; `None` if no spread is known, or if the error is asked for in the result's unit.
-    pub fn goal(&self) -> Option<Goal> {
-        let means = Means::expected(&self.prior)?;
-        let tolerance = self.tolerance;
-        matches!(tolerance, Tolerance::Relative(_)).then_some(Goal { means, tolerance })
-    }
-}
-
 /// The numbers of runs of the first round, if nothing is known: some at the step with number `start`, and at the next
 /// coarser one, or else at the next finer one.
 pub fn pilot(offers: &[Offer], start: usize) -> Vec<usize> {
@@ -121,62 +130,55 @@ pub fn pilot(offers: &[Offer], start: usize) -> Vec<usize> {
     (0..offers.len()).map(runs).collect()
 }
 
-/// The numbers of runs of the first round, if enough is known about all results: a few runs at the step from which on
-/// the whole estimate is expected to be cheapest.
-pub fn first_round(hopes: &[Hope], offers: &[Offer], confidence: f64) -> Option<Vec<usize>> {
-    let only = |at: usize, count: usize| {
-        let mut runs = vec![0; offers.len()];
-        runs[at] = count;
-        runs
+/// The numbers of runs of the first round of goals that are expected: a few runs at the step from which on the whole
+/// estimate is expected to be cheapest; `None` without goals.
+pub fn first_round(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<usize>> {
+    let few = goals
+        .iter()
+        .map(|goal| goal.means.prior.first_runs())
+        .max()?;
+    let only = |at: usize| -> Vec<usize> {
+        let runs = (0..offers.len()).map(|k| if k == at { few } else { 0 });
+        runs.collect()
     };
-    let goals: Option<Vec<Goal>> = hopes.iter().map(Hope::goal).collect();
-    let known: Vec<(Goal, Limit)> = goals?
-        .into_iter()
-        .map(|goal| (goal, Limit::exact(1.0)))
-        .collect();
-    let few = hopes.iter().map(|hope| hope.prior.first_runs()).max();
-    let few = few?;
     let cost = |at: usize| -> f64 {
-        let asked = (confidence, MOST_TRIED);
-        let (counts, errors) = predicted(&known, offers, only(at, few), asked);
-        let secs = offers.iter().zip(counts);
-        let secs: f64 = secs.map(|(offer, runs)| offer.secs * runs as f64).sum();
+        let (counts, errors) = predicted(goals, offers, only(at), (confidence, MOST_TRIED));
+        let counted = offers.iter().zip(counts);
+        let secs: f64 = counted.map(|(offer, runs)| offer.secs * runs as f64).sum();
         // Errors that are not reached cost as many times more.
-        let goals = known.iter().zip(errors);
-        let missing = goals.map(|((goal, _), error)| (error / goal.tolerance.of(1.0)).max(1.0));
+        let pairs = goals.iter().zip(errors);
+        let missing = pairs.map(|(goal, error)| (error / goal.tolerance.of(1.0)).max(1.0));
         secs * missing.product::<f64>().powi(2)
     };
     let costs: Vec<f64> = (0..offers.len()).map(cost).collect();
     let cheapest = (0..offers.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]));
-    Some(only(cheapest?, few))
+    cheapest.map(only)
 }
 
 /// The number of runs at each of `offers` that an estimate is expected to need that begins with `first`, from what is
-/// known of its goals and their limits: at most `most`, or those of the first round. Also the errors that they are
-/// expected to give, half widths in the order of the goals.
+/// known of its goals: at most `most`, or those of the first round. Also the errors that they are expected to give,
+/// half widths in the order of the goals.
 pub fn predicted(
-    known: &[(Goal, Limit)],
+    known: &[Goal],
     offers: &[Offer],
     first: Vec<usize>,
     (confidence, most): (f64, usize),
 ) -> (Vec<usize>, Vec<f64>) {
     let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
-    let mut offers = offers.to_vec();
-    let begun = offers.iter_mut().zip(first);
-    begun.for_each(|(offer, runs)| offer.runs = runs);
+    let begun = offers.iter().zip(first);
+    let mut offers: Vec<Offer> = begun
+        .map(|(offer, runs)| Offer { runs, ..*offer })
+        .collect();
     loop {
         let counts: Vec<usize> = offers.iter().map(|offer| offer.runs).collect();
-        let goals = known.iter().map(|(goal, expected)| Goal {
-            means: goal.means.afresh(expected, &steps, &counts),
-            tolerance: goal.tolerance,
-        });
-        let goals: Vec<Goal> = goals.collect();
+        let after = |goal: &Goal| {
+            let means = goal.means.afresh(&goal.limit, &steps, &counts);
+            Goal::new(goal.tolerance, means)
+        };
+        let goals: Vec<Goal> = known.iter().map(after).collect();
         let room = most.saturating_sub(counts.iter().sum());
-        let more = further(&goals, &offers, confidence).filter(|_| room > 0);
-        let Some(more) = more else {
-            let errors = goals
-                .iter()
-                .map(|goal| goal.means.reached(confidence).0.error);
+        let Some(more) = further(&goals, &offers, confidence).filter(|_| room > 0) else {
+            let errors = goals.iter().map(|goal| goal.reached(confidence).error);
             return (counts, errors.collect());
         };
         let asked = more.iter().sum::<usize>().max(room);

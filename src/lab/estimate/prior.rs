@@ -32,6 +32,33 @@ const WELL_KNOWN: f64 = 4.0;
 /// Steps of the iteration for the shares of sizes.
 const ITERATIONS: usize = 30;
 
+/// What a result is about: results about the same have similar spreads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Quantity {
+    /// Densities.
+    Density,
+    /// Flows, also per width.
+    Flow,
+    /// Speeds.
+    Speed,
+    /// Times.
+    Time,
+}
+
+impl Quantity {
+    /// By the unit of a result.
+    pub fn of_unit(unit: &str) -> Option<Self> {
+        match unit {
+            "P/m²" => Some(Self::Density),
+            "P/s" | "P/(m s)" => Some(Self::Flow),
+            "m/s" => Some(Self::Speed),
+            "s" => Some(Self::Time),
+            _ => None,
+        }
+    }
+}
+
 /// A measured result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Known {
@@ -41,6 +68,8 @@ pub struct Known {
     pub profile: String,
     /// The result.
     pub result: String,
+    /// What it is about.
+    pub quantity: Quantity,
     /// The standard deviation of runs, as a part of the value.
     pub spread: f64,
     /// Its degrees of freedom.
@@ -49,30 +78,6 @@ pub struct Known {
     pub error: f64,
     /// The standard error of this error; `None` if only one step was run.
     pub error_std: Option<f64>,
-}
-
-/// What a result is about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Quantity {
-    Density,
-    Flow,
-    Speed,
-    Time,
-}
-
-impl Quantity {
-    /// By the name of a result, which has its quantity or unit.
-    pub(super) fn of(result: &str) -> Option<Self> {
-        let has = |words: &[&str]| words.iter().any(|word| result.contains(word));
-        match () {
-            () if has(&["std", "highest", "at_end"]) => None,
-            () if has(&["density", "per_m2"]) => Some(Self::Density),
-            () if has(&["flow"]) => Some(Self::Flow),
-            () if has(&["speed", "m_per_s"]) => Some(Self::Speed),
-            () if has(&["secs"]) => Some(Self::Time),
-            () => None,
-        }
-    }
 }
 
 /// The results that ship with the program.
@@ -98,23 +103,26 @@ impl Prior {
         similar: 0,
     };
 
-    /// What is known about a result of this scenario and profile: from `rows`, finished rows of the same study, and
-    /// from what ships with the program, without the scene `but`.
-    pub fn of(profile: &str, result: &str, rows: &[Known], but: Option<&str>) -> Self {
-        let Some(quantity) = Quantity::of(result) else {
+    /// What is known about a result of a profile: from `rows`, finished rows of the same study, and from what ships
+    /// with the program about its quantity, without the scene `but`.
+    pub fn of(
+        [profile, result]: [&str; 2],
+        quantity: Option<Quantity>,
+        rows: &[Known],
+        but: Option<&str>,
+    ) -> Self {
+        let Some(quantity) = quantity else {
             return Self::NONE;
         };
-        let same = SHIPPED.iter().filter(|known| {
-            Quantity::of(&known.result) == Some(quantity) && but != Some(known.scene.as_str())
-        });
-        let own: Vec<&Known> = same.clone().filter(|k| k.profile == profile).collect();
-        let others = same.filter(|k| k.profile != profile);
-        let near = rows
-            .iter()
-            .filter(|k| k.profile == profile && k.result == result);
-        let near: Vec<&Known> = near.collect();
-        let all = own.iter().chain(&near).map(|known| (*known, 1.0));
-        let all = all.chain(others.map(|known| (known, OTHER_PROFILE)));
+        let is_same =
+            |known: &&Known| known.quantity == quantity && but != Some(known.scene.as_str());
+        let is_own = |known: &&Known| known.profile == profile;
+        let is_near = |known: &&Known| is_own(known) && known.result == result;
+        let same = SHIPPED.iter().filter(is_same);
+        let (own, others): (Vec<&Known>, Vec<&Known>) = same.partition(is_own);
+        let near: Vec<&Known> = rows.iter().filter(is_near).collect();
+        let full = own.iter().chain(&near).map(|known| (*known, 1.0));
+        let all = full.chain(others.into_iter().map(|known| (known, OTHER_PROFILE)));
         Self {
             shares: shares(&all.collect::<Vec<_>>()),
             spread: of_rows(&near).or_else(|| of_scenes(&own)),
@@ -162,10 +170,10 @@ fn of_rows(near: &[&Known]) -> Option<(f64, f64)> {
     let logs: Vec<f64> = near.iter().map(|known| known.spread.ln()).collect();
     let of = mean(&logs)?;
     let [single, least] = ROWS;
-    let between = MeanStd::of(&logs).and_then(|of| of.std());
-    let between = between.map_or(single, |std| std.max(least));
-    let chance = near.iter().map(|known| 0.5 / known.degrees.max(1.0));
-    let chance = chance.sum::<f64>() / near.len() as f64;
+    let measured = MeanStd::of(&logs).and_then(|of| of.std());
+    let between = measured.map_or(single, |std| std.max(least));
+    let chances = near.iter().map(|known| 0.5 / known.degrees.max(1.0));
+    let chance = chances.sum::<f64>() / near.len() as f64;
     let degrees = 0.5 / (between.powi(2) + chance);
     Some((of.exp(), degrees.min(MOST_DEGREES)))
 }

@@ -1,9 +1,10 @@
 //! A scenario whose results are estimated, and the time steps on offer.
 
-use std::mem::{Discriminant, discriminant};
+use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::prior::Quantity;
 use super::wanted::Request;
 use crate::gallery::distinct;
 use analysis::round;
@@ -18,13 +19,12 @@ use scenario::measurements::Measurement;
 use scenario::quote::shown;
 use scenario::{Preset, Scenario, Setting, suggestion};
 
-/// The kind of a measurement.
-pub(super) type Kind = Discriminant<Measurement>;
-
 /// How often the first step may be halved.
 const HALVINGS: u32 = 6;
-/// Results of every run beside its measurements.
-pub const OF_RUNS: [&str; 2] = ["evacuated", "time_secs"];
+/// Results of every run beside its measurements and its first values.
+const OF_RUNS: [&str; 2] = ["evacuated", "time_secs"];
+/// The results of every run that are times.
+const TIMES: [&str; 4] = ["time_secs", "t50_secs", "t95_secs", "t100_secs"];
 
 /// Why a question cannot be asked.
 #[derive(Debug, thiserror::Error)]
@@ -32,18 +32,9 @@ pub enum QuestionError {
     /// The scenario is invalid or does not fit into memory.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The scenario does not measure a wanted result.
-    #[error("{option} {name}: the scenario has no such result; it has {known}{suggestion}")]
-    Unknown {
-        /// `--error` or `--bound`.
-        option: &'static str,
-        /// The name.
-        name: String,
-        /// The names of all results.
-        known: String,
-        /// "; did you mean …?", or empty.
-        suggestion: String,
-    },
+    /// The scenario does not measure a wanted result: the option, its name, those of all results, and a suggestion.
+    #[error("{0} {1}: the scenario has no such result; it has {2}{3}")]
+    Unknown(&'static str, String, String, String),
     /// A result is wanted twice.
     #[error("{0} {1}: given twice; give it once for each result")]
     Twice(&'static str, String),
@@ -87,8 +78,8 @@ pub struct Question {
     pub start: usize,
     /// Whether runs of the same population differ: RVO draws candidates.
     pub is_behavior_random: bool,
-    /// The results asked for, with the kinds of their measurements; `None` for results of every run.
-    pub(super) kinds: Vec<(String, Option<Kind>)>,
+    /// The measurements of the scenario.
+    pub(super) measurements: Vec<Measurement>,
     case: Case,
     memory: Option<u64>,
 }
@@ -105,10 +96,9 @@ impl Question {
         request: Request,
         memory: Option<u64>,
     ) -> Result<Self, QuestionError> {
-        let typed = settings
-            .iter()
-            .filter(|setting| setting.path() != ["profile"]);
-        let typed = typed.map(Setting::brief).collect();
+        let is_typed = |setting: &&Setting| setting.path() != ["profile"];
+        let brief = settings.iter().filter(is_typed).map(Setting::brief);
+        let typed: Vec<String> = brief.collect();
         let case = Case::new(source, settings, &Memory::new(memory))?;
         Self::of(&case, typed, request, memory)
     }
@@ -123,55 +113,77 @@ impl Question {
         request: Request,
         memory: Option<u64>,
     ) -> Result<Self, QuestionError> {
+        let given = case.scenario().map_err(RunError::from)?;
+        let preset = match given.document.get("preset") {
+            Some(_) => Vec::new(),
+            None => vec![Setting::of("preset", json!(Preset::Fast), "preset=fast")],
+        };
+        let case = case.with(preset, &Memory::new(memory))?;
         let scenario = case.scenario().map_err(RunError::from)?;
-        let has_preset = scenario.document.get("preset").is_some();
-        let preset = Setting::of("preset", json!(Preset::Fast), "preset=fast");
-        let preset = Some(preset).filter(|_| !has_preset);
-        let case = case.with(preset.into_iter().collect(), &Memory::new(memory))?;
-        let scenario = case.scenario().map_err(RunError::from)?;
-        let [title, profile] = [&scenario.name, &scenario.profile_name].map(String::clone);
-        let first_seed = scenario.seed;
-        let mut notes = scenario.notes.clone();
         let (rungs, start) = rungs(&scenario);
         if let [only] = rungs.as_slice() {
             return Err(QuestionError::OneStep(only.step));
         }
-        if start + 1 == rungs.len() {
-            let step = rungs[start].step;
-            notes.push(format!(
+        let coarsest = (start + 1 == rungs.len()).then(|| {
+            format!(
                 "longer time steps than {} s are not known to be stable here: the first runs have this step and its \
                  half",
-                round::brief(step)
-            ));
-        }
-        let is_behavior_random = scenario.scene.needs().rvo;
-        let asked = request.wanted.iter().map(|wanted| &wanted.name);
-        let asked = distinct(asked.chain(request.bounds.iter().map(|bound| &bound.name)));
-        let asked = asked.into_iter();
-        let kinds = asked.map(|name| (name.clone(), kind_of(&scenario.measurements, name)));
-        let kinds = kinds.collect();
-        let first = Summary::first_names(&scenario.scene);
-        let run = Run::new(scenario).map_err(RunError::from)?;
-        let names = Summary::of(&run).metrics.into_keys();
-        let names = distinct(names.chain(OF_RUNS.map(str::to_owned)).chain(first));
-        let wanted = request.wanted.iter().map(|wanted| wanted.name.as_str());
-        check("--error", wanted.collect(), &names)?;
-        let bounds = request.bounds.iter().map(|bound| bound.name.as_str());
-        check("--bound", bounds.collect(), &names)?;
-        Ok(Self {
-            request,
-            names,
-            title: [title, profile],
+                round::brief(rungs[start].step)
+            )
+        });
+        let question = Self {
+            title: [&scenario.name, &scenario.profile_name].map(String::clone),
             settings: typed,
-            first_seed,
-            notes,
+            first_seed: scenario.seed,
+            notes: scenario.notes.iter().cloned().chain(coarsest).collect(),
             rungs,
             start,
-            is_behavior_random,
-            kinds,
+            is_behavior_random: scenario.scene.needs().rvo,
+            measurements: scenario.measurements.clone(),
+            names: names(scenario)?,
+            request,
             case,
             memory,
-        })
+        };
+        let Request { wanted, bounds, .. } = &question.request;
+        question.check("--error", wanted.iter().map(|wanted| &wanted.name))?;
+        question.check("--bound", bounds.iter().map(|bound| &bound.name))?;
+        Ok(question)
+    }
+
+    /// Whether the scenario has these results, and each is given once.
+    fn check<'n>(
+        &self,
+        option: &'static str,
+        given: impl Iterator<Item = &'n String>,
+    ) -> Result<(), QuestionError> {
+        let mut seen = Vec::new();
+        for name in given {
+            if !self.names.contains(name) {
+                let known = self.names.join(", ");
+                let similar = suggestion(name, self.names.iter().map(String::as_str));
+                return Err(QuestionError::Unknown(option, shown(name), known, similar));
+            }
+            if seen.contains(&name) {
+                return Err(QuestionError::Twice(option, shown(name)));
+            }
+            seen.push(name);
+        }
+        Ok(())
+    }
+
+    /// What a result is about, by its unit; `None` if nothing is known of such results, as of deviations and of checks
+    /// of the program.
+    pub fn quantity(&self, result: &str) -> Option<Quantity> {
+        if TIMES.contains(&result) {
+            return Some(Quantity::Time);
+        }
+        let is_check = |of: &Measurement| matches!(of, Measurement::Integrity(_));
+        let measured = self.measurements.iter().filter(|of| !is_check(of));
+        let mut quantities = measured.flat_map(Measurement::quantities);
+        let quantity = quantities.find(|quantity| quantity.name == result)?;
+        let is_mean = !quantity.meaning.contains("standard deviation");
+        Quantity::of_unit(quantity.unit).filter(|_| is_mean)
     }
 
     /// The run with the `k`-th seed at a step.
@@ -179,9 +191,7 @@ impl Question {
     /// # Errors
     /// As [`Case::new`].
     pub fn case(&self, rung: Rung, k: usize) -> Result<Case, RunError> {
-        let mut settings = at(rung);
-        settings.push(set("seed", json!(self.seed(k))));
-        self.case.with(settings, &Memory::new(self.memory))
+        self.at(rung, &[("seed", k)])
     }
 
     /// A run of a population, both counted from 0.
@@ -194,25 +204,40 @@ impl Question {
         population: usize,
         repetition: usize,
     ) -> Result<Case, RunError> {
-        let mut settings = at(rung);
-        settings.push(set("seed", json!(self.seed(population))));
-        settings.push(set("population_seed", json!(self.seed(population))));
-        settings.push(set("behavior_seed", json!(self.seed(repetition))));
-        self.case.with(settings, &Memory::new(self.memory))
+        let keys = ["seed", "population_seed", "behavior_seed"];
+        let numbers = [population, population, repetition];
+        let seeds: Vec<(&str, usize)> = keys.into_iter().zip(numbers).collect();
+        self.at(rung, &seeds)
+    }
+
+    /// A run at a step, with these seeds by their numbers.
+    fn at(&self, rung: Rung, seeds: &[(&str, usize)]) -> Result<Case, RunError> {
+        let step = [
+            ("time_step_secs", json!(rung.step)),
+            ("coarse_every", json!(rung.coarse_every)),
+        ];
+        let seeds = seeds.iter().map(|&(key, k)| (key, json!(self.seed(k))));
+        self.with(step.into_iter().chain(seeds))
     }
 
     /// The `k`-th seed.
-    fn seed(&self, k: usize) -> u64 {
+    pub fn seed(&self, k: usize) -> u64 {
         self.first_seed.wrapping_add(k as u64)
     }
 
-    /// The run with the `k`-th seed and a preset, at its own step.
+    /// A run with further settings.
     ///
     /// # Errors
     /// As [`Case::new`].
-    pub fn with_preset(&self, preset: Preset, k: usize) -> Result<Case, RunError> {
-        let seed = self.seed(k);
-        let settings = vec![set("preset", json!(preset)), set("seed", json!(seed))];
+    pub fn with<'s>(
+        &self,
+        settings: impl IntoIterator<Item = (&'s str, Value)>,
+    ) -> Result<Case, RunError> {
+        let set = |(key, value)| {
+            let text = format!("{key}={value}");
+            Setting::of(key, value, &text)
+        };
+        let settings = settings.into_iter().map(set).collect();
         self.case.with(settings, &Memory::new(self.memory))
     }
 
@@ -225,21 +250,16 @@ impl Question {
         let text = parts.map(String::as_str).collect::<Vec<_>>().join("-");
         let fit = |c: char| c.is_alphanumeric() || "_=.+".contains(c);
         let words = text.split(|c| !fit(c)).filter(|word| !word.is_empty());
-        let name = words.collect::<Vec<_>>().join("-");
-        let name: String = name
-            .trim_start_matches(['.', '-'])
-            .chars()
-            .take(LONGEST)
-            .collect();
-        if name.is_empty() {
-            "estimate".to_owned()
-        } else {
-            name
+        let joined = words.collect::<Vec<_>>().join("-");
+        let visible = joined.trim_start_matches(['.', '-']);
+        match visible.is_empty() {
+            true => "estimate".to_owned(),
+            false => visible.chars().take(LONGEST).collect(),
         }
     }
 
     /// The files that the scenario is read from.
-    pub fn files(&self) -> impl Iterator<Item = &std::path::Path> {
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
         self.case.files()
     }
 
@@ -249,36 +269,12 @@ impl Question {
     }
 }
 
-/// Whether the scenario has these results, and each is given once.
-fn check(option: &'static str, given: Vec<&str>, names: &[String]) -> Result<(), QuestionError> {
-    for (k, name) in given.iter().enumerate() {
-        if !names.iter().any(|known| known == name) {
-            return Err(QuestionError::Unknown {
-                option,
-                name: shown(name),
-                known: names.join(", "),
-                suggestion: suggestion(name, names.iter().map(String::as_str)),
-            });
-        }
-        if given[..k].contains(name) {
-            return Err(QuestionError::Twice(option, shown(name)));
-        }
-    }
-    Ok(())
-}
-
-/// The settings of a step.
-fn at(rung: Rung) -> Vec<Setting> {
-    vec![
-        set("time_step_secs", json!(rung.step)),
-        set("coarse_every", json!(rung.coarse_every)),
-    ]
-}
-
-/// A setting of the program's own.
-fn set(key: &str, value: Value) -> Setting {
-    let text = format!("{key}={value}");
-    Setting::of(key, value, &text)
+/// The names of all results of a scenario.
+fn names(scenario: Scenario) -> Result<Vec<String>, RunError> {
+    let first = Summary::first_names(&scenario.scene);
+    let measured = Summary::of(&Run::new(scenario)?).metrics.into_keys();
+    let of_runs = OF_RUNS.map(str::to_owned).into_iter().chain(first);
+    Ok(distinct(measured.chain(of_runs)))
 }
 
 /// The steps on offer, from the finest to the coarsest, and the place of the scenario's own step among them: half of
@@ -304,10 +300,4 @@ fn rungs(scenario: &Scenario) -> (Vec<Rung>, usize) {
         rungs.push(twice);
     }
     (rungs, start)
-}
-
-/// The kind of the measurement that has a value of this name.
-pub(super) fn kind_of(measured: &[Measurement], name: &str) -> Option<Kind> {
-    let has_value = |one: &&Measurement| one.names().iter().any(|own| own == name);
-    measured.iter().find(has_value).map(discriminant)
 }

@@ -1,8 +1,7 @@
 //! The answer for readers and programs.
 
-use super::answer::{ABOUT, Answer, Row};
+use super::answer::{ABOUT, Answer, AtStep, Row};
 use super::bounds::Bounded;
-use super::costs::name as name_of;
 use super::pictures::{bound_sheet, curve_sheet, sheet};
 use super::run::Runs;
 use super::validated::Validated;
@@ -24,7 +23,7 @@ pub fn names(name: &str) -> Names {
 }
 
 /// A row at one of its steps.
-type Step<'a> = (&'a Row, &'a super::answer::AtStep);
+type Step<'a> = (&'a Row, &'a AtStep);
 
 impl Answer {
     /// Everything for readers and programs, with these pictures of the results, of their curves and of the bounds.
@@ -50,12 +49,10 @@ impl Answer {
             blocks.push(Block::figure(curves, sheet.clone(), ""));
         }
         let title = format!("Estimate of {}", self.scenario);
-        let findings = Findings::new(name, Document::of(title, blocks), self.json());
-        let mut findings = tables
-            .iter()
-            .try_fold(findings, |findings, (name, table)| {
-                findings.with_table(name, table)
-            })?;
+        let whole = Findings::new(name, Document::of(title, blocks), self.json());
+        let mut findings = tables.iter().try_fold(whole, |findings, (name, table)| {
+            findings.with_table(name, table)
+        })?;
         if let Some((_, rows)) = &drawn {
             findings.tables.push((curves.to_owned(), curves_csv(rows)?));
         }
@@ -104,10 +101,9 @@ impl Answer {
             text += &format!("{why}.\n");
         }
         if let Some(why) = &self.stopped {
-            let missed = self.results.iter().filter(|row| !row.is_reached);
-            let missed: Vec<String> = missed
-                .map(|row| format!("{} to {}", row.name, row.percent()))
-                .collect();
+            let reached = |row: &Row| format!("{} to {}", row.name, row.percent());
+            let rows = self.results.iter().filter(|row| !row.is_reached);
+            let missed: Vec<String> = rows.map(reached).collect();
             if !missed.is_empty() {
                 text += &format!("Not reached, as {why}: {}.\n", missed.join(", "));
             }
@@ -130,11 +126,11 @@ impl Answer {
     }
 
     fn bounds_table(&self) -> Table {
-        let side = |bound: &Bounded| if bound.is_upper() { "≤" } else { "≥" };
+        let side = |bound: &Bounded| if bound.bound.is_upper() { "≤" } else { "≥" };
         Table::of(&self.bounds)
-            .column("result", |bound| bound.name.as_str())
+            .column("result", |bound| bound.bound.name.as_str())
             .column("runs", |bound| {
-                let inner = round::brief(100.0 * bound.inner());
+                let inner = round::brief(100.0 * bound.bound.inner());
                 format!("{inner} % {}", side(bound))
             })
             .column("bound", |bound| {
@@ -183,26 +179,11 @@ impl Answer {
         for row in self.results.iter().filter(|row| row.reached.error > 0.0) {
             text += &row.at_default_step();
         }
-        let secs = |secs: Option<f64>| secs.map_or("none".to_owned(), round::brief);
-        let costs = self.costs.iter();
-        let costs =
-            costs.map(|cost| format!("{} {}", name_of(cost.timed.preset), secs(cost.all_secs)));
-        let costs: Vec<String> = costs.collect();
-        if !costs.is_empty() {
-            text += &format!(
-                " Seconds for the same errors of all results with a preset alone: {}.",
-                costs.join(", ")
-            );
-        }
-        if self.costs.iter().any(|cost| cost.all_secs.is_none()) {
-            text += " None: the error of its step is larger.";
-        }
         text
     }
 
     /// One line per result.
     fn for_programs(&self) -> Table {
-        let runs = |row: &Row| row.steps.iter().map(|at| at.runs).sum::<usize>();
         let finest = |row: &Row| row.steps.first().map(|at| at.step);
         let columns = Table::of(&self.results)
             .column("result", |row| row.name.as_str())
@@ -210,7 +191,7 @@ impl Answer {
             .column("error", |row| row.reached.error)
             .column("seeds", |row| row.reached.seeds)
             .column("step", |row| row.reached.step)
-            .column("n", runs)
+            .column("n", Row::runs)
             .column("wanted", |row| row.wanted.as_str())
             .column("reached", |row| row.is_reached)
             .column("confidence", |_| self.confidence)
@@ -223,8 +204,8 @@ impl Answer {
     /// One line per bound.
     fn bounds_for_programs(&self) -> Table {
         let columns = Table::of(&self.bounds)
-            .column("result", |bound| bound.name.as_str())
-            .column("share", |bound| bound.share)
+            .column("result", |bound| bound.bound.name.as_str())
+            .column("share", |bound| bound.bound.share)
             .column("bound", |bound| bound.value)
             .column("rank", |bound| bound.rank)
             .column("n", |bound| bound.runs)
@@ -271,13 +252,13 @@ impl Bounded {
         let means = match self.confidence {
             Some(holds) => format!(
                 "another run is beyond this value with at most {} % probability; this statement is true with {:.1} %",
-                round::brief(100.0 * (1.0 - self.inner())),
+                round::brief(100.0 * (1.0 - self.bound.inner())),
                 100.0 * holds
             ),
             None => "runs with the same population are not independent, so no probability is given"
                 .to_owned(),
         };
-        format!("{}: {of}; {means}.{missing}\n", self.name)
+        format!("{}: {of}; {means}.{missing}\n", self.bound.name)
     }
 }
 
@@ -292,11 +273,10 @@ impl Row {
         let (name, default) = (&self.name, self.default);
         let [found, reached] = [default.error_of_step, self.reached.error];
         let [error, around] = [found, reached].map(|error| self.written(error));
+        let step = format!("default step of {} s", round::brief(default.timed.step));
         let what = match found.abs() < reached {
-            true => {
-                format!("No error of the default step of 0.02 s was found in {name} (± {around})")
-            }
-            false => format!("The default step of 0.02 s has an error of {error} in {name}"),
+            true => format!("No error of the {step} was found in {name} (± {around})"),
+            false => format!("The {step} has an error of {error} in {name}"),
         };
         match default.runs.map(f64::ceil) {
             Some(runs) => format!(

@@ -1,19 +1,15 @@
 //! The rows of a study, each with the errors asked for.
 
-use std::fmt;
-
 use serde_json::{Map, Value, json};
 
 use super::answer::{ABOUT, Answer, Row};
 use super::bounds::Bounded;
-use super::costs;
 use super::question::{Question, QuestionError};
 use super::run::run;
 use super::wanted::Request;
 use crate::error::LabError;
 use crate::sweep::{Cell, Study, plain};
 use analysis::round;
-use analysis::statistics::{MeanStd, Range};
 use output::document::{Block, Document, Findings, Names};
 use output::table::{Columns, Table};
 use runs::identity::ENGINE;
@@ -24,7 +20,8 @@ use runs::store::Store;
 pub struct Questions<'a> {
     study: &'a Study,
     wanted: Vec<String>,
-    questions: Vec<(&'a Cell, Question)>,
+    /// The first cell of each combination, with its question.
+    pub rows: Vec<(&'a Cell, Question)>,
 }
 
 /// The answers to them.
@@ -42,20 +39,18 @@ impl<'a> Questions<'a> {
     /// # Errors
     /// A combination does not have one of the results; the message names it.
     pub fn new(study: &'a Study, request: &Request) -> Result<Self, QuestionError> {
-        let firsts = study
-            .cells
-            .chunks(study.seeds.max(1))
-            .map(|cells| &cells[0]);
-        let question = |cell: &'a Cell| {
+        let question = |cells: &'a [Cell]| {
+            let cell = &cells[0];
             let question = Question::of(&cell.case, Vec::new(), request.clone(), study.memory);
             let in_row = |error| QuestionError::Row(cell.to_string(), Box::new(error));
             Ok((cell, question.map_err(in_row)?))
         };
+        let rows = study.cells.chunks(study.seeds.max(1)).map(question);
         let wanted = request.wanted.iter().map(|wanted| wanted.name.clone());
         Ok(Self {
             study,
             wanted: wanted.collect(),
-            questions: firsts.map(question).collect::<Result<_, QuestionError>>()?,
+            rows: rows.collect::<Result<_, QuestionError>>()?,
         })
     }
 
@@ -70,9 +65,9 @@ impl<'a> Questions<'a> {
     /// # Errors
     /// As [`run`](fn@super::run).
     pub fn answer(&self, store: &Store, listener: &dyn Listener) -> Result<Answers<'a>, LabError> {
-        let all = self.questions.len();
+        let all = self.rows.len();
         let (mut rows, mut known) = (Vec::new(), Vec::new());
-        for (k, (cell, question)) in self.questions.iter().enumerate() {
+        for (k, (cell, question)) in self.rows.iter().enumerate() {
             listener.notes(&format!("row {} of {all}: {cell}", k + 1));
             let runs = run(question, &known, store, listener)
                 .map_err(|error| LabError::Failed(format!("{cell}: {error}")))?;
@@ -96,9 +91,11 @@ impl Answers<'_> {
     /// # Errors
     /// A table cannot be written.
     pub fn findings(&self) -> Result<Findings, LabError> {
-        let results = [Block::text(ABOUT), Block::table(self.table())];
-        let blocks = results.into_iter().chain(self.costs());
-        self.findings_with(blocks.collect())
+        self.findings_with(vec![
+            Block::text(ABOUT),
+            Block::table(self.table()),
+            self.cost(),
+        ])
     }
 
     /// The same with these blocks before the picture.
@@ -131,11 +128,11 @@ impl Answers<'_> {
 
     /// As one JSON object.
     pub fn json(&self) -> Value {
-        let rows = self.rows.iter().map(|(cell, answer)| {
+        let entries = self.rows.iter().map(|(cell, answer)| {
             let settings: Map<String, Value> = cell.values.iter().cloned().collect();
             json!({ "settings": settings, "estimate": answer })
         });
-        let rows: Vec<Value> = rows.collect();
+        let rows: Vec<Value> = entries.collect();
         json!({ "study": self.study.name, "about": ABOUT, "engine": ENGINE, "rows": rows })
     }
 
@@ -152,7 +149,7 @@ impl Answers<'_> {
                 .column("reached", |(_, answer)| {
                     answer.row(name).map_or("no value", Row::yes_or_no)
                 })
-                .column("n", |(_, answer)| answer.row(name).map(runs));
+                .column("n", |(_, answer)| answer.row(name).map(Row::runs));
         }
         for (k, name) in self.bound_names().into_iter().enumerate() {
             columns = columns.column(&name, |(_, answer)| {
@@ -162,52 +159,11 @@ impl Answers<'_> {
         columns.table()
     }
 
-    /// What the rows cost, and what each preset would have cost for the same errors: as a table, and in words.
-    pub fn costs(&self) -> Vec<Block> {
-        let Some((_, first)) = self
-            .rows
-            .first()
-            .filter(|(_, first)| !first.costs.is_empty())
-        else {
-            let secs = self.rows.iter().map(|(_, answer)| answer.secs);
-            let secs = round::brief(secs.sum());
-            return vec![Block::Text(format!("{secs} s of computing on one core."))];
-        };
-        let mut columns = self
-            .settings()
-            .column("estimate [s]", |(_, answer)| round::brief(answer.secs));
-        let mut words = String::new();
-        for (k, cost) in first.costs.iter().enumerate() {
-            let preset = costs::name(cost.timed.preset);
-            let secs = |answer: &Answer| answer.costs.get(k)?.all_secs;
-            columns = columns.column(&format!("{preset} [s]"), |(_, answer)| {
-                secs(answer).map(round::brief)
-            });
-            let shares = self
-                .rows
-                .iter()
-                .filter_map(|(_, answer)| Some(answer.secs / secs(answer)?));
-            let shares: Vec<f64> = shares.collect();
-            words += &format!(
-                "For the same errors, estimates took {} of the time of {preset} in {} of {} rows",
-                Shares(&shares),
-                shares.len(),
-                self.rows.len()
-            );
-            words += match shares.len() == self.rows.len() {
-                true => ".\n",
-                false => "; in the others the error of its step is larger than theirs.\n",
-            };
-            let two_steps = self
-                .rows
-                .iter()
-                .filter_map(|(_, answer)| Some(answer.secs / answer.costs.get(k)?.two_steps_secs));
-            words += &format!(
-                "If the error of {preset}'s step must be found, too, from runs at this step and its half: {}.\n",
-                Shares(&two_steps.collect::<Vec<_>>())
-            );
-        }
-        vec![Block::table(columns.table()), Block::Text(words)]
+    /// What the rows cost.
+    pub fn cost(&self) -> Block {
+        let times = self.rows.iter().map(|(_, answer)| answer.secs);
+        let secs = round::brief(times.sum());
+        Block::Text(format!("{secs} s of computing on one core."))
     }
 
     /// For programs: one row per combination of settings.
@@ -221,7 +177,7 @@ impl Answers<'_> {
                 .column(&format!("{name}_seeds"), |line| Some(reached(line)?.seeds))
                 .column(&format!("{name}_step"), |line| Some(reached(line)?.step))
                 .column(&format!("{name}_n"), |(_, answer)| {
-                    answer.row(name).map(runs)
+                    answer.row(name).map(Row::runs)
                 });
         }
         for (k, name) in self.bound_names().into_iter().enumerate() {
@@ -233,9 +189,10 @@ impl Answers<'_> {
     /// The names of bounds, with the share of runs in percent: `time_secs_95_percent`.
     fn bound_names(&self) -> Vec<String> {
         let first = self.rows.first();
-        let bounds = first.map(|(_, answer)| answer.bounds.as_slice());
-        let bounds = bounds.unwrap_or_default().iter();
-        let name = |of: &Bounded| format!("{}_{}_percent", of.name, round::brief(100.0 * of.share));
+        let asked = first.map(|(_, answer)| answer.bounds.as_slice());
+        let bounds = asked.unwrap_or_default().iter();
+        let percent = |of: &Bounded| round::brief(100.0 * of.bound.share);
+        let name = |of: &Bounded| format!("{}_{}_percent", of.bound.name, percent(of));
         bounds.map(name).collect()
     }
 
@@ -250,27 +207,7 @@ impl Answers<'_> {
     }
 }
 
-/// Shares of times, in words.
-struct Shares<'a>(&'a [f64]);
-
-impl fmt::Display for Shares<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Some(mean) = MeanStd::of(self.0) else {
-            return f.write_str("no share");
-        };
-        let range = Range::of(self.0);
-        let [mean, low, high] =
-            [mean.mean, range.minimum, range.maximum].map(|x| format!("{x:.2}"));
-        write!(f, "{mean} on average ({low} to {high})")
-    }
-}
-
 /// The name of the files with the answers, without an extension.
 fn name(study: &Study) -> String {
     format!("{}-estimate", study.name)
-}
-
-/// The number of runs with a value.
-fn runs(row: &Row) -> usize {
-    row.steps.iter().map(|at| at.runs).sum()
 }

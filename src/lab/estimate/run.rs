@@ -2,17 +2,15 @@
 
 use std::time::Instant;
 
-use rayon::current_num_threads;
-
-use super::costs::Timed;
-use super::plan::{Goal, Offer, further};
+use super::plan::{Goal, Offer, first_round, further, pilot};
 use super::prior::{Known, Prior};
 use super::question::{Question, Rung};
-use super::sample::Sample;
-use super::series::{Means, Reached, Series};
+use super::series::{Reached, Series};
+use super::wanted::Wanted;
 use crate::error::LabError;
-use crate::jobs::each;
+use crate::jobs::{Results, each};
 use crate::sweep::number;
+use analysis::round;
 use output::table::as_precise;
 use runs::case::{Case, RunResult};
 use runs::drive::End;
@@ -20,15 +18,27 @@ use runs::error::RunError;
 use runs::job::{self, Job, Listener};
 use runs::store::Store;
 
+/// The results of runs; the error message of those that failed.
+pub(super) type Outcomes = Vec<Result<RunResult, String>>;
+
 /// The runs at one time step, in the order of their seeds.
 #[derive(Debug, Clone)]
 pub struct StepRuns {
     /// The step.
     pub rung: Rung,
     /// The results; the error message of runs that failed.
-    pub results: Vec<Result<RunResult, String>>,
+    pub results: Outcomes,
     /// The expected time of a run, seconds on one core.
     pub expected_secs: f64,
+}
+
+/// The runs of IMO's guidelines on evacuation analysis.
+#[derive(Debug, Clone)]
+pub struct Sample {
+    /// The results; the error message of runs that failed.
+    pub results: Outcomes,
+    /// The number of runs of each population.
+    pub repetitions: usize,
 }
 
 /// The results after a round.
@@ -46,14 +56,14 @@ pub struct Runs<'a> {
     pub question: &'a Question,
     /// The runs at each step on offer, from the finest to the coarsest.
     pub levels: Vec<StepRuns>,
+    /// What was known about the wanted results before.
+    pub priors: Vec<Prior>,
+    /// The values of each wanted result after the last round, with its goal; `None` without values.
+    pub(super) wanted: Vec<(Series, Option<Goal>)>,
     /// The state after each round.
     pub looks: Vec<Look>,
     /// The runs of bounds, if these are not those at a step on offer.
     pub sample: Option<Sample>,
-    /// Runs with each preset, if they were asked for.
-    pub timed: Vec<Timed>,
-    /// What was known about the wanted results before.
-    pub priors: Vec<Prior>,
     /// Why no more runs were made, if an error is larger than asked for.
     pub stopped: Option<String>,
 }
@@ -79,14 +89,14 @@ pub fn run<'a>(
     if !question.request.wanted.is_empty() {
         runs.make_for_errors(&elapsed, store, listener)?;
     }
-    if question.request.costs {
-        runs.timed = Timed::of_presets(question, store, listener)?;
-    }
     Ok(runs)
 }
 
 impl<'a> Runs<'a> {
     /// No runs yet; what ships with the program counts without the scene `but`.
+    ///
+    /// # Errors
+    /// A run is invalid.
     pub fn none(
         question: &'a Question,
         rows: &[Known],
@@ -100,18 +110,19 @@ impl<'a> Runs<'a> {
                 expected_secs: case.map_err(|error| failed(question, error))?.expected_secs,
             })
         };
-        let wanted = question.request.wanted.iter();
-        let profile = &question.title[1];
-        let priors = wanted.map(|wanted| Prior::of(profile, &wanted.name, rows, but));
-        let priors = priors.collect();
         let levels: Result<_, LabError> = question.rungs.iter().map(level).collect();
+        let [_, profile] = &question.title;
+        let priors = question.request.wanted.iter().map(|wanted| {
+            let quantity = question.quantity(&wanted.name);
+            Prior::of([profile, &wanted.name], quantity, rows, but)
+        });
         Ok(Self {
             question,
             levels: levels?,
+            priors: priors.collect(),
+            wanted: Vec::new(),
             looks: Vec::new(),
             sample: None,
-            timed: Vec::new(),
-            priors,
             stopped: None,
         })
     }
@@ -123,16 +134,30 @@ impl<'a> Runs<'a> {
         store: &Store,
         listener: &dyn Listener,
     ) -> Result<(), LabError> {
-        let first = self.first_round(Some(listener));
-        let made = self.levels.iter().map(|level| level.results.len());
-        let mut wanted: Vec<usize> = first.into_iter().zip(made).map(|(a, b)| a.max(b)).collect();
+        let confidence = self.question.request.confidence;
+        let (first, steps) = (self.first_round(), self.levels.iter());
+        if let Some(first) = &first {
+            let similar: usize = self.priors.iter().map(|prior| prior.similar).sum();
+            for (count, level) in first.iter().zip(steps).filter(|(count, _)| **count > 0) {
+                let step = round::brief(level.rung.step);
+                listener.notes(&format!(
+                    "begins with {count} runs with a step of {step} s, as {similar} similar results suggest"
+                ));
+            }
+        }
+        let first = first.unwrap_or_else(|| pilot(&self.offers(), self.question.start));
+        let made = self.counts().into_iter();
+        let mut wanted: Vec<usize> = made
+            .zip(first)
+            .map(|(made, first)| made.max(first))
+            .collect();
         loop {
             let limit = self.cut(&mut wanted, elapsed());
             self.make(&wanted, store, listener)?;
             self.look();
             listener.notes(&self.progress());
-            let confidence = self.question.request.confidence;
-            let Some(more) = further(&self.goals(), &self.offers(), confidence) else {
+            let goals: Vec<Goal> = self.goals().flatten().cloned().collect();
+            let Some(more) = further(&goals, &self.offers(), confidence) else {
                 return Ok(());
             };
             if limit.is_some() {
@@ -146,56 +171,24 @@ impl<'a> Runs<'a> {
         }
     }
 
-    /// Reduces the numbers of runs to what the limits allow. Returns the limit that is then reached, if one is.
-    pub(super) fn cut(&self, wanted: &mut [usize], elapsed: f64) -> Option<String> {
-        let limits = self.question.request.limits;
-        let done: Vec<usize> = self
-            .levels
-            .iter()
-            .map(|level| level.results.len())
-            .collect();
-        let more = |wanted: &[usize]| -> usize {
-            wanted.iter().zip(&done).map(|(all, done)| all - done).sum()
-        };
-        // The largest numbers that are allowed in these proportions, then one more each while there is room.
-        let scale = |wanted: &mut [usize], room: usize| {
-            let asked = more(wanted).max(1);
-            let full = wanted.to_vec();
-            for (all, done) in wanted.iter_mut().zip(&done) {
-                *all = done + (*all - done) * room / asked;
-            }
-            let mut left = room - more(wanted);
-            for (all, full) in wanted.iter_mut().zip(full) {
-                let added = usize::from(*all < full && left > 0);
-                *all += added;
-                left -= added;
-            }
-        };
-        let sampled = self.sample.as_ref().map_or(0, |of| of.results.len());
-        let free = limits
-            .runs
-            .saturating_sub(done.iter().sum::<usize>() + sampled);
-        let asked = more(wanted);
-        let mut reached = None;
-        if asked > free {
-            scale(wanted, free);
-            reached = Some(format!("at most {} runs were allowed", limits.runs));
-        }
-        let Some(secs) = limits.secs else {
-            return reached;
-        };
-        let measured = self.measured_factor();
-        let levels = self.levels.iter().zip(wanted.iter()).zip(&done);
-        let due: f64 = levels
-            .map(|((level, all), done)| (all - done) as f64 * level.expected_secs * measured)
-            .sum::<f64>()
-            / current_num_threads() as f64;
-        if done.iter().any(|&runs| runs > 0) && elapsed + due > secs {
-            let part = ((secs - elapsed) / due).clamp(0.0, 1.0);
-            scale(wanted, (more(wanted) as f64 * part) as usize);
-            reached = Some(format!("at most {} minutes were allowed", secs / 60.0));
-        }
-        reached
+    /// The wanted results before their first runs; `None` if too little is known of one.
+    pub(super) fn expected(&self) -> Option<Vec<Goal>> {
+        let wanted = self.question.request.wanted.iter().zip(&self.priors);
+        wanted
+            .map(|(wanted, prior)| Goal::expected(wanted.error, prior))
+            .collect()
+    }
+
+    /// The numbers of runs of the first round; `None` if too little is known.
+    pub(super) fn first_round(&self) -> Option<Vec<usize>> {
+        let confidence = self.question.request.confidence;
+        first_round(&self.expected()?, &self.offers(), confidence)
+    }
+
+    /// What the wanted results say to rows of the same study.
+    pub(super) fn known(&self) -> impl Iterator<Item = Known> {
+        let wanted = self.question.request.wanted.iter().zip(self.goals());
+        wanted.filter_map(|(wanted, goal)| Known::of(self.question, &wanted.name, &goal?.means))
     }
 
     /// The measured time of the runs so far, over the expected time; 1 without runs.
@@ -208,7 +201,7 @@ impl<'a> Runs<'a> {
         if expected > 0.0 { wall / expected } else { 1.0 }
     }
 
-    /// The results of all runs, without those that time presets.
+    /// The results of all runs.
     pub fn all_results(&self) -> impl Iterator<Item = &Result<RunResult, String>> + Clone {
         let levels = self.levels.iter().flat_map(|level| &level.results);
         levels.chain(self.sample.iter().flat_map(|sample| &sample.results))
@@ -221,6 +214,9 @@ impl<'a> Runs<'a> {
     }
 
     /// Makes runs until there are these many at each step.
+    ///
+    /// # Errors
+    /// As [`run`](fn@run).
     pub fn make(
         &mut self,
         wanted: &[usize],
@@ -228,65 +224,53 @@ impl<'a> Runs<'a> {
         listener: &dyn Listener,
     ) -> Result<(), LabError> {
         let question = self.question;
-        let places = self.levels.iter().zip(wanted).enumerate();
-        let places = places
-            .flat_map(|(k, (level, &all))| (level.results.len()..all).map(move |seed| (k, seed)));
-        let places: Vec<(usize, usize)> = places.collect();
-        let run = |index: usize| {
-            let (k, seed) = places[index];
-            let case = question.case(question.rungs[k], seed)?;
-            let step = question.rungs[k].step;
-            let name = format!("step {step:.4} s, seed {}", case.seed);
+        let levels = self.levels.iter().zip(wanted).enumerate();
+        let missing: Vec<(usize, usize)> = levels
+            .flat_map(|(k, (level, &all))| (level.results.len()..all).map(move |seed| (k, seed)))
+            .collect();
+        let case = |index: usize| {
+            let (k, seed) = missing[index];
+            let rung = question.rungs[k];
+            let case = question.case(rung, seed)?;
+            let name = format!("step {:.4} s, seed {}", rung.step, case.seed);
             Ok((case, name))
         };
-        let results = self.results_of(places.len(), &run, store, listener)?;
-        for (result, (k, _)) in results.into_iter().zip(places) {
+        let cases = each(missing.len(), case)?;
+        let results = self.results_of(cases, store, listener)?;
+        for (result, (k, _)) in results.into_iter().zip(missing) {
             self.levels[k].results.push(result);
         }
         Ok(())
     }
 
-    /// The results of runs, each with its name, in order; the error message of runs that failed.
+    /// The results of runs, each with its name, in order.
     pub(super) fn results_of(
         &self,
-        count: usize,
-        run: &(dyn Fn(usize) -> Result<(Case, String), RunError> + Sync),
+        cases: Vec<Result<(Case, String), RunError>>,
         store: &Store,
         listener: &dyn Listener,
-    ) -> Result<Vec<Result<RunResult, String>>, LabError> {
-        let question = self.question;
-        let cases: Result<Vec<(Case, String)>, RunError> = each(count, run)?.into_iter().collect();
-        let cases = cases.map_err(|error| failed(question, error))?;
-        let jobs = cases.iter().map(|(case, name)| case.job(name.clone()));
-        let jobs: Vec<Job> = jobs.collect();
-        job::run(&jobs, store, question.memory(), listener)?;
-        let result = |(case, _): &(Case, String)| {
-            let failure = || {
-                let failure = store.failure(&case.key);
-                failure.map_or("no result".to_owned(), |failure| failure.message)
-            };
-            store.result(&case.key)?.ok_or_else(failure)
-        };
-        Ok(cases.iter().map(result).collect())
-    }
-
-    /// The values of the wanted result with this number.
-    pub fn series(&self, wanted: usize) -> Series {
-        self.series_of(&self.question.request.wanted[wanted].name)
+    ) -> Result<Outcomes, LabError> {
+        let invalid = |error| failed(self.question, error);
+        let named: Result<Vec<(Case, String)>, RunError> = cases.into_iter().collect();
+        let valid = named.map_err(invalid)?;
+        let jobs: Vec<Job> = valid
+            .iter()
+            .map(|(case, name)| case.job(name.clone()))
+            .collect();
+        job::run(&jobs, store, self.question.memory(), listener)?;
+        let outcome = |job: &Job| Results(store).outcome(&job.key);
+        let missing = || Err("no result".to_owned());
+        let results = jobs.iter().map(|job| outcome(job).unwrap_or_else(missing));
+        Ok(results.collect())
     }
 
     /// The values of the result with this name.
-    pub fn series_of(&self, name: &str) -> Series {
-        let value = |result: &Result<RunResult, String>| {
-            let result = result.as_ref().ok()?;
-            number(result, name)
-        };
-        let values = self.levels.iter();
+    pub fn series(&self, name: &str) -> Series {
+        let value = |result: &Result<RunResult, String>| number(result.as_ref().ok()?, name);
+        let values = |level: &StepRuns| level.results.iter().map(value).collect();
         Series {
             steps: self.levels.iter().map(|level| level.rung.step).collect(),
-            values: values
-                .map(|level| level.results.iter().map(value).collect())
-                .collect(),
+            values: self.levels.iter().map(values).collect(),
         }
     }
 
@@ -300,58 +284,51 @@ impl<'a> Runs<'a> {
         self.levels.iter().map(offer).collect()
     }
 
-    /// The wanted results that have values.
-    pub fn goals(&self) -> Vec<Goal> {
-        self.named_goals().map(|(_, goal)| goal).collect()
+    /// The number of runs at each step.
+    pub(super) fn counts(&self) -> Vec<usize> {
+        let levels = self.levels.iter();
+        levels.map(|level| level.results.len()).collect()
     }
 
-    /// These with their names.
-    pub(super) fn named_goals(&self) -> impl Iterator<Item = (&str, Goal)> {
-        let wanted = self.question.request.wanted.iter().zip(self.means());
-        wanted.filter_map(|(wanted, means)| {
-            let (means, tolerance) = (means?, wanted.error);
-            Some((wanted.name.as_str(), Goal { means, tolerance }))
-        })
+    /// The goals of the wanted results; `None` without values.
+    pub(super) fn goals(&self) -> impl Iterator<Item = Option<&Goal>> {
+        self.wanted.iter().map(|(_, goal)| goal.as_ref())
     }
 
     /// Notes what is reached.
-    fn look(&mut self) {
-        let confidence = self.question.request.confidence;
-        let reached = self.means().map(|means| Some(means?.reached(confidence).0));
-        let reached = reached.collect();
-        let runs = self.levels.iter().map(|level| level.results.len());
-        let runs = runs.collect();
-        self.looks.push(Look { runs, reached });
-    }
-
-    /// The means of each wanted result; `None` without values.
-    fn means(&self) -> impl Iterator<Item = Option<Means>> {
-        let priors = self.priors.iter().enumerate();
-        priors.map(|(k, prior)| self.series(k).means(prior))
+    pub(super) fn look(&mut self) {
+        let request = &self.question.request;
+        let with_goal = |(wanted, prior): (&Wanted, &Prior)| {
+            let series = self.series(&wanted.name);
+            let means = series.means(prior);
+            (series, means.map(|means| Goal::new(wanted.error, means)))
+        };
+        let wanted = request.wanted.iter().zip(&self.priors);
+        self.wanted = wanted.map(with_goal).collect();
+        let reached = |goal: Option<&Goal>| Some(goal?.reached(request.confidence));
+        self.looks.push(Look {
+            runs: self.counts(),
+            reached: self.goals().map(reached).collect(),
+        });
     }
 
     /// Why a result has no values.
     pub(super) fn without_values(&self, name: &str) -> String {
         let results = self.all_results();
-        let failure = results.clone().find_map(|result| result.as_ref().err());
         let all = results.clone().count();
+        let failure = results.clone().find_map(|result| result.as_ref().err());
         let ended = |end| {
-            results
-                .clone()
-                .flatten()
-                .filter(|r| r.summary.end == Some(end))
-                .count()
+            let finished = results.clone().flatten();
+            finished.filter(|r| r.summary.end == Some(end)).count()
         };
-        let why = failure.map_or_else(
-            || {
-                format!(
-                    "{} ended because no agent arrived for some time, {} at the scenario's duration",
-                    ended(End::Idle),
-                    ended(End::Duration)
-                )
-            },
-            |message| format!("the first error is: {message}"),
-        );
+        let why = match failure {
+            Some(message) => format!("the first error is: {message}"),
+            None => format!(
+                "{} ended because no agent arrived for some time, {} at the scenario's duration",
+                ended(End::Idle),
+                ended(End::Duration)
+            ),
+        };
         format!("{name}: too few of {all} runs have a value; {why}")
     }
 
@@ -360,27 +337,21 @@ impl<'a> Runs<'a> {
         let Some(look) = self.looks.last() else {
             return String::new();
         };
-        let wanted = self.question.request.wanted.iter().zip(&look.reached);
-        let results = wanted.map(|(wanted, reached)| {
+        let result = |(wanted, reached): (&Wanted, &Option<Reached>)| {
+            let name = &wanted.name;
             let Some(reached) = reached else {
-                return format!("{} has no value", wanted.name);
+                return format!("{name} has no value");
             };
-            let [value, error] =
-                [reached.value, reached.error].map(|number| as_precise(number, reached.error));
-            format!(
-                "{} {value} ± {error}{}, wanted {}",
-                wanted.name,
-                reached
-                    .percent()
-                    .map_or(String::new(), |part| format!(" ({part})")),
-                wanted.error
-            )
-        });
+            let written = |number| as_precise(number, reached.error);
+            let (value, error) = (written(reached.value), written(reached.error));
+            let percent = reached.percent().map(|part| format!(" ({part})"));
+            let part = percent.unwrap_or_default();
+            format!("{name} {value} ± {error}{part}, wanted {}", wanted.error)
+        };
+        let wanted = self.question.request.wanted.iter().zip(&look.reached);
         let runs: usize = look.runs.iter().sum();
-        format!(
-            "after {runs} runs: {}",
-            results.collect::<Vec<_>>().join("; ")
-        )
+        let results: Vec<String> = wanted.map(result).collect();
+        format!("after {runs} runs: {}", results.join("; "))
     }
 }
 

@@ -59,8 +59,8 @@ impl Series {
     pub fn means(&self, prior: &Prior) -> Option<Means> {
         let (mut levels, mut squares, mut own_degrees) = (Vec::new(), 0.0, 0.0);
         for (&step, values) in self.steps.iter().zip(&self.values) {
-            let values: Vec<f64> = values.iter().flatten().copied().collect();
-            let Some(of) = MeanStd::of(&values) else {
+            let known: Vec<f64> = values.iter().flatten().copied().collect();
+            let Some(of) = MeanStd::of(&known) else {
                 continue;
             };
             let (runs, mean) = (of.count, of.mean);
@@ -68,11 +68,8 @@ impl Series {
             own_degrees += (runs - 1) as f64;
             squares += of.std().map_or(0.0, |std| (runs - 1) as f64 * std * std);
         }
-        let mean = levels
-            .first()
-            .filter(|_| own_degrees > 0.0)
-            .map(|level: &Level| level.mean)?;
-        let [variance, degrees] = prior.variance(squares, own_degrees, mean);
+        let finest = levels.first().filter(|_| own_degrees > 0.0)?;
+        let [variance, degrees] = prior.variance(squares, own_degrees, finest.mean);
         Some(Means {
             levels,
             variance,
@@ -107,17 +104,20 @@ impl Means {
     }
 
     /// The value in the limit of fine steps with its errors.
-    pub fn reached(&self, confidence: f64) -> (Reached, Limit) {
-        let limit = self.limit();
+    pub fn reached(&self, confidence: f64) -> Reached {
+        self.errors(&self.limit(), confidence)
+    }
+
+    /// The same from the limit of these means.
+    pub fn errors(&self, limit: &Limit, confidence: f64) -> Reached {
         let width = self.width(confidence);
         let of_step = (limit.variance - limit.from_seeds).max(0.0);
-        let reached = Reached {
+        Reached {
             value: limit.value,
             error: width * limit.variance.sqrt(),
             seeds: width * limit.from_seeds.sqrt(),
             step: width * of_step.sqrt(),
-        };
-        (reached, limit)
+        }
     }
 
     /// By how much the variance of the limit exceeds what the error allows, as a logarithm; 0 if it does not.

@@ -1,9 +1,12 @@
 //! What is known of the error of the model: the scenes of the built-in validation that have the same measurements.
 
+use std::mem::{Discriminant, discriminant};
+
 use serde::Serialize;
 
-use super::question::{Kind, Question, kind_of};
+use super::question::Question;
 use crate::error::LabError;
+use crate::gallery::distinct;
 use crate::suite::{Case, Suite};
 use crate::sweep::{Cell, Changes};
 use scenario::measurements::Measurement;
@@ -26,8 +29,38 @@ pub struct Validated {
     pub misses: Vec<(String, String)>,
 }
 
+/// The kind of a measurement.
+type Kind = Discriminant<Measurement>;
+
+/// The kind of the measurement that has a value of this name; `None` for results of every run.
+fn kind_of(measured: &[Measurement], name: &str) -> Option<Kind> {
+    let has_value = |one: &&Measurement| one.names().iter().any(|own| own == name);
+    measured.iter().find(has_value).map(discriminant)
+}
+
+/// The kinds of the measured values that a case compares with runs, one for each.
+fn kinds_of(case: &Case, runs: &[(&Cell, Vec<Measurement>)]) -> Vec<Kind> {
+    let checks = case
+        .checks
+        .iter()
+        .filter(|check| check.expected.is_measured());
+    let kinds = checks.filter_map(|check| {
+        let name = check.metric()?;
+        let of = |cell: &Cell| {
+            check
+                .of
+                .iter()
+                .any(|of| of == cell.label().unwrap_or_default())
+        };
+        let mut own = runs.iter().filter(|(cell, _)| of(cell));
+        own.find_map(|(_, measured)| kind_of(measured, name))
+    });
+    kinds.collect()
+}
+
 impl Validated {
-    /// The results of a question, by the kind of their measurements. Nothing is simulated.
+    /// The results of a question, by the kind of their measurements; all results without scenes together at the end.
+    /// Nothing is simulated.
     ///
     /// # Errors
     /// The validation of the program is invalid.
@@ -38,66 +71,49 @@ impl Validated {
             true => std::slice::from_ref(profile),
             false => suite.profiles.get(..1).unwrap_or_default(), // the scenes of another profile
         };
-        let changes = Changes {
+        let study = suite.study(&Changes {
             profiles,
             seeds: Some(1),
             ..Changes::default()
-        };
-        let study = suite.study(&changes)?;
+        })?;
         let cells = study.cells.iter();
-        let cells = cells.map(|cell| Ok((cell, cell.case.scenario()?.measurements)));
-        let cells: Vec<(&Cell, Vec<Measurement>)> = cells
-            .collect::<Result<_, ScenarioError>>()
-            .map_err(invalid)?;
-        let values_of = |case: &Case, kind: Kind| {
-            let checks = case
-                .checks
-                .iter()
-                .filter(|check| check.expected.is_measured());
-            let has_kind = checks.filter(|check| {
-                let mut own = cells.iter().filter(|(cell, _)| {
-                    let label = cell.label().unwrap_or_default();
-                    check.of.iter().any(|of| of == label)
-                });
-                own.any(|(_, measured)| {
-                    check.metric().and_then(|name| kind_of(measured, name)) == Some(kind)
-                })
-            });
-            has_kind.count()
-        };
-        let mut found: Vec<(Option<Kind>, Self)> = Vec::new();
-        for (name, kind) in &question.kinds {
-            if let Some((_, same)) = found.iter_mut().find(|(other, _)| other == kind) {
-                same.results.push(name.clone());
-                continue;
-            }
-            let cases = suite.without_data();
-            let cases = cases.map(|case| (case, kind.map_or(0, |kind| values_of(case, kind))));
-            let cases: Vec<(&Case, usize)> = cases.filter(|(_, values)| *values > 0).collect();
-            let misses = cases.iter().filter_map(|(case, _)| {
+        let measured = cells.map(|cell| Ok((cell, cell.case.scenario()?.measurements)));
+        let read: Result<Vec<(&Cell, Vec<Measurement>)>, _> = measured.collect();
+        let runs = read.map_err(invalid)?;
+        let with_kinds = suite
+            .without_data()
+            .map(|case| (case, kinds_of(case, &runs)));
+        let cases: Vec<(&Case, Vec<Kind>)> = with_kinds.collect();
+        let request = &question.request;
+        let wanted = request.wanted.iter().map(|wanted| &wanted.name);
+        let names = distinct(wanted.chain(request.bounds.iter().map(|bound| &bound.name)));
+        let kind = |name: &&String| kind_of(&question.measurements, name);
+        // Results whose kind is measured in no scene are of one group.
+        let has = |kind: &Kind| cases.iter().any(|(_, kinds)| kinds.contains(kind));
+        let group = |name: &&String| kind(name).filter(has);
+        let groups = distinct(names.iter().map(group));
+        let (known, unknown): (Vec<_>, Vec<_>) = groups.into_iter().partition(Option::is_some);
+        let validated = known.into_iter().chain(unknown).map(|of| {
+            let count = |kinds: &[Kind]| kinds.iter().filter(|kind| Some(**kind) == of).count();
+            let own = cases.iter().filter(|(_, kinds)| count(kinds) > 0);
+            let misses = own.clone().filter_map(|(case, _)| {
                 let why = case.known_misses.get(profile)?;
                 Some((case.name.clone(), why.clone()))
             });
-            let validated = Self {
-                results: vec![name.clone()],
-                scenes: cases.iter().map(|(case, _)| case.name.clone()).collect(),
-                values: cases.iter().map(|(_, values)| values).sum(),
+            Self {
+                results: names
+                    .iter()
+                    .filter(|name| group(name) == of)
+                    .map(|name| (*name).clone())
+                    .collect(),
+                scenes: own.clone().map(|(case, _)| case.name.clone()).collect(),
+                values: own.clone().map(|(_, kinds)| count(kinds)).sum(),
                 profile: profile.clone(),
                 is_judged: suite.profiles.contains(profile),
                 misses: misses.collect(),
-            };
-            found.push((*kind, validated));
-        }
-        let (known, unknown): (Vec<Self>, Vec<Self>) = found
-            .into_iter()
-            .map(|(_, validated)| validated)
-            .partition(|validated| !validated.scenes.is_empty());
-        // All results without scenes together.
-        let unknown = unknown.into_iter().reduce(|mut all, one| {
-            all.results.extend(one.results);
-            all
+            }
         });
-        Ok(known.into_iter().chain(unknown).collect())
+        Ok(validated.collect())
     }
 
     /// In words.
@@ -108,19 +124,19 @@ impl Validated {
                 "Error of the model: no scene of `sandbox validate` measures {results}.\n"
             );
         }
-        let scenes = self.scenes.join(" ");
-        let mut text = format!(
-            "Error of the model: `sandbox validate {scenes} --profile '{}' --out DIR` compares the measurement of \
-             {results} with {} values from experiments.",
-            self.profile, self.values
-        );
-        let names: Vec<&str> = self.misses.iter().map(|(name, _)| name.as_str()).collect();
-        text += &match (self.is_judged, names.as_slice()) {
-            (false, _) => " The profile is not one of those with known misses.".to_owned(),
-            (true, []) => " The profile has no known misses there.".to_owned(),
-            (true, names) => format!(" Known misses of the profile: {}.", names.join(", ")),
+        let misses: Vec<&str> = self.misses.iter().map(|(name, _)| name.as_str()).collect();
+        let known = match (self.is_judged, misses.as_slice()) {
+            (false, _) => "The profile is not one of those with known misses.".to_owned(),
+            (true, []) => "The profile has no known misses there.".to_owned(),
+            (true, names) => format!("Known misses of the profile: {}.", names.join(", ")),
         };
-        text + "\n"
+        format!(
+            "Error of the model: `sandbox validate {} --profile '{}' --out DIR` compares the measurement of {results} \
+             with {} values from experiments. {known}\n",
+            self.scenes.join(" "),
+            self.profile,
+            self.values
+        )
     }
 }
 

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::Serialize;
+
 use analysis::round;
 use analysis::statistics::draws_above;
 use scenario::quote::shown;
@@ -50,29 +52,31 @@ impl FromStr for Wanted {
 
     /// Reads `NAME=2%` or `NAME=0.05`.
     fn from_str(text: &str) -> Result<Self, String> {
-        let form = || "not a result with its error, such as flow_per_s=1% or flow_per_s=0.05";
-        let (name, error) = text.split_once('=').ok_or_else(form)?;
-        let (number, is_part) = match error.trim().strip_suffix('%') {
-            Some(number) => (number, true),
-            None => (error, false),
-        };
-        let number: f64 = number.trim().parse().map_err(|_| form())?;
+        let form = "not a result with its error, such as flow_per_s=1% or flow_per_s=0.05";
+        let ([name, typed], number, is_part) = named_number(text).ok_or(form)?;
         if !(number > 0.0 && number.is_finite()) {
-            let error = shown(error.trim());
-            return Err(format!("the error {error} must be above 0"));
+            return Err(format!("the error {} must be above 0", shown(typed)));
         }
-        Ok(Self {
-            name: name.trim().to_owned(),
-            error: match is_part {
-                true => Tolerance::Relative(number / 100.0),
-                false => Tolerance::Absolute(number),
-            },
-        })
+        let error = match is_part {
+            true => Tolerance::Relative(number / 100.0),
+            false => Tolerance::Absolute(number),
+        };
+        let name = name.to_owned();
+        Ok(Self { name, error })
     }
 }
 
+/// A name with a value as typed, the number of this value, and whether it is in percent.
+fn named_number(text: &str) -> Option<([&str; 2], f64, bool)> {
+    let (name, value) = text.split_once('=')?;
+    let (name, value) = (name.trim(), value.trim());
+    let percent = value.strip_suffix('%');
+    let number = percent.unwrap_or(value).trim().parse().ok()?;
+    Some(([name, value], number, percent.is_some()))
+}
+
 /// A result, and the share of runs that shall be on one side of a bound.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bound {
     /// The name of the measurement.
     pub name: String,
@@ -103,20 +107,17 @@ impl FromStr for Bound {
 
     /// Reads `NAME=95%`.
     fn from_str(text: &str) -> Result<Self, String> {
-        let form = || "not a result with a share of runs, such as time_secs=95%";
-        let (name, share) = text.split_once('=').ok_or_else(form)?;
-        let number = share.trim().strip_suffix('%').ok_or_else(form)?;
-        let percent: f64 = number.trim().parse().map_err(|_| form())?;
+        let form = "not a result with a share of runs, such as time_secs=95%";
+        let read = named_number(text).filter(|(.., is_part)| *is_part);
+        let ([name, typed], percent, _) = read.ok_or(form)?;
         if !(0.01..=99.99).contains(&percent) {
-            let share = shown(share.trim());
             return Err(format!(
-                "the share {share} must be between 0.01 and 99.99 %"
+                "the share {} must be between 0.01 and 99.99 %",
+                shown(typed)
             ));
         }
-        Ok(Self {
-            name: name.trim().to_owned(),
-            share: percent / 100.0,
-        })
+        let (name, share) = (name.to_owned(), percent / 100.0);
+        Ok(Self { name, share })
     }
 }
 
@@ -157,8 +158,6 @@ pub struct Request {
     pub confidence: f64,
     /// Its limits.
     pub limits: Limits,
-    /// Whether to time some runs with each preset.
-    pub costs: bool,
 }
 
 impl Request {

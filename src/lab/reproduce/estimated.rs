@@ -23,12 +23,13 @@ pub const ESTIMATED: &str = "table1-estimate";
 /// The paper's values cannot be read, or it has no such row.
 pub fn estimated(answers: &Answers) -> Result<Findings, LabError> {
     let paper = published().table1.rows;
-    let rows = answers.rows.iter().map(|(cell, answer)| {
-        let row = paper.iter().find(|row| is_of(cell, row)).cloned();
-        let row = row.ok_or_else(|| LabError::missing(cell.to_string(), "row of the paper"))?;
+    let pairs = answers.rows.iter().map(|(cell, answer)| {
+        let published = paper.iter().find(|row| is_of(cell, row)).cloned();
+        let row =
+            published.ok_or_else(|| LabError::missing(cell.to_string(), "row of the paper"))?;
         Ok((row, answer))
     });
-    let rows: Vec<Row> = rows.collect::<Result<_, LabError>>()?;
+    let rows: Vec<Row> = pairs.collect::<Result<_, LabError>>()?;
     let mut columns = Table::of(&rows)
         .column("profile", |(paper, _)| written(&paper.profile))
         .column("setting", |(paper, _)| paper.varied.as_ref().map(varied));
@@ -69,14 +70,13 @@ pub fn estimated(answers: &Answers) -> Result<Findings, LabError> {
          {BANDS_IN_WORDS}. The paper's values are those of its time step, ours of the limit of fine steps. {ABOUT}",
         counts.iter().sum::<usize>(),
     );
-    let mut blocks = vec![
+    answers.findings_with(vec![
         Block::Part(ESTIMATED.to_owned(), "Table 1 with errors".to_owned()),
         Block::table(columns.table()),
         Block::text(verdict),
         Block::Part("costs".to_owned(), "Costs".to_owned()),
-    ];
-    blocks.extend(answers.costs());
-    answers.findings_with(blocks)
+        answers.cost(),
+    ])
 }
 
 /// Whether a cell has the settings of a row.

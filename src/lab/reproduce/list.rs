@@ -35,8 +35,8 @@ pub fn reproduce(
     store: &Store,
     listener: &dyn Listener,
 ) -> Result<Vec<Findings>, LabError> {
-    let studies: Result<Vec<Vec<Study>>, _> = products.iter().map(|p| p.studies(seeds)).collect();
-    let studies = studies?;
+    let read: Result<Vec<Vec<Study>>, _> = products.iter().map(|p| p.studies(seeds)).collect();
+    let studies = read?;
     let mut jobs = Vec::new();
     for (product, studies) in products.iter().zip(&studies) {
         for study in studies {

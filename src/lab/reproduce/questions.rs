@@ -111,8 +111,8 @@ fn rankings(combinations: &[Combination]) -> Result<Table, LabError> {
     let mut geometries = Vec::new();
     for rows in combinations.chunks(profiles) {
         let label = rows.first().map_or("", Combination::label);
-        let through = rows.iter().flat_map(|row| row.values("uncounted"));
-        let through = through.flatten();
+        let counts = rows.iter().flat_map(|row| row.values("uncounted"));
+        let through = counts.flatten();
         geometries.push(Geometry {
             name: label.rsplit_once(": ").map_or(label, |(name, _)| name),
             table: CrossingTable::new(rows)?,
@@ -124,8 +124,8 @@ fn rankings(combinations: &[Combination]) -> Result<Table, LabError> {
         format!("{kept} of {all}")
     };
     let broken = |geometry: &Geometry| {
-        let broken = geometry.table.rankings.iter().filter(|r| !r.is_kept());
-        let broken = broken.map(|r| format!("{} {} > {}", r.quantity, r.higher, r.lower));
+        let missed = geometry.table.rankings.iter().filter(|r| !r.is_kept());
+        let broken = missed.map(|r| format!("{} {} > {}", r.quantity, r.higher, r.lower));
         broken.collect::<Vec<_>>().join("; ")
     };
     Ok(Table::of(&geometries)

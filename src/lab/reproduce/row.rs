@@ -93,8 +93,8 @@ pub(super) fn kept(rows: &[Row], seeds: usize) -> String {
         format!("{name} {}", rows.len() - missed)
     };
     let quantities: Vec<String> = names.into_iter().map(quantity).collect();
-    let evacuated = rows.iter().any(|row| row.evacuated.is_some());
-    let evacuated = if evacuated {
+    let is_counted = rows.iter().any(|row| row.evacuated.is_some());
+    let evacuated = if is_counted {
         ", evacuated agents 1"
     } else {
         ""

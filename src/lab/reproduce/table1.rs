@@ -78,8 +78,8 @@ fn has_settings_of(scenario: &Scenario, row: &PublishedRow) -> bool {
         .varied
         .iter()
         .map(|of| format!("{}={}", of.setting, of.value));
-    let settings = varied.chain([format!("profile={}", row.profile)]);
-    let settings: Result<Vec<Setting>, _> = settings.map(|text| text.parse()).collect();
+    let typed = varied.chain([format!("profile={}", row.profile)]);
+    let settings: Result<Vec<Setting>, _> = typed.map(|text| text.parse()).collect();
     let ours = settings
         .ok()
         .and_then(|settings| Scenario::shipped(EVACUATION, &settings).ok());

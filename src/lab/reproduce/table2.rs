@@ -57,8 +57,8 @@ impl CrossingTable {
         let [density, _, flow] = METRICS;
         let mut found = rankings("flow", &ranked(flow, |row| row.flow));
         found.extend(rankings("density", &ranked(density, |row| row.density)));
-        let rows = paper.into_iter().zip(ours);
-        let rows = rows.map(|(row, ours)| Row::new(row, ours, METRICS));
+        let pairs = paper.into_iter().zip(ours);
+        let rows = pairs.map(|(row, ours)| Row::new(row, ours, METRICS));
         Ok(Self {
             rows: rows.collect(),
             rankings: found,

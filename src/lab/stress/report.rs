@@ -66,8 +66,8 @@ pub fn names() -> Names {
 impl Report {
     /// All violated requirements; empty if there are none.
     pub fn failures(&self) -> Vec<String> {
-        let hard = self.hard.iter().filter(|run| !is_passed(run));
-        let hard = hard.map(|run| {
+        let failed = self.hard.iter().filter(|run| !is_passed(run));
+        let hard = failed.map(|run| {
             let [through_walls, not_finite] =
                 FAULTS.map(|name| run.metric(name).unwrap_or_default());
             format!(
@@ -76,11 +76,11 @@ impl Report {
             )
         });
         let everywhere = self.cells.iter().chain(&self.held_out);
-        let unstable = everywhere.filter(|cell| !cell.auto_is_stable());
-        let unstable = unstable.map(|cell| format!("auto is not stable: {cell:?}"));
+        let longer = everywhere.filter(|cell| !cell.auto_is_stable());
+        let unstable = longer.map(|cell| format!("auto is not stable: {cell:?}"));
         let is_short = |cell: &&Cell| cell.limits.iter().any(|limit| limit.ratio() < LEAST);
-        let short = self.cells.iter().filter(is_short);
-        let short = short.map(|cell| format!("auto is too short: {cell:?}"));
+        let shorter = self.cells.iter().filter(is_short);
+        let short = shorter.map(|cell| format!("auto is too short: {cell:?}"));
         hard.chain(unstable).chain(short).collect()
     }
 
@@ -102,8 +102,8 @@ impl Report {
         blocks.push(part(jitter, "Crowds at rest"));
         blocks.push(Block::table(jitter_table(&self.jitter)));
         let document = Document::of("Stress tests", blocks);
-        let findings = Findings::new(NAME, document, json!(self));
-        let findings = findings.with_table(MAPS, &rows(&self.cells))?;
+        let whole = Findings::new(NAME, document, json!(self));
+        let findings = whole.with_table(MAPS, &rows(&self.cells))?;
         Ok(findings.with_table(HELD_OUT, &rows(&self.held_out))?)
     }
 
@@ -222,11 +222,11 @@ fn jitter_table(jitter: &[Finished]) -> Table {
 
 /// One row for each point and condition.
 fn rows(cells: &[Cell]) -> Table {
-    let rows = cells.iter().flat_map(|cell| {
+    let limits_of = cells.iter().flat_map(|cell| {
         let limits = Condition::ALL.into_iter().zip(cell.limits);
         limits.map(|limit| (cell.crowd, limit))
     });
-    let rows: Vec<_> = rows.collect();
+    let rows: Vec<_> = limits_of.collect();
     let table = Table::of(&rows)
         .column("gas_constant", |(crowd, _)| crowd.gas_constant)
         .column("rest_density_max", |(crowd, _)| crowd.rest_density_max)

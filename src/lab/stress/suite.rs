@@ -25,8 +25,8 @@ pub fn stress(detail: &Detail, store: &Store, listener: &dyn Listener) -> Result
     let wanted = |cell: &sweep::Cell| cell.label() != Some(&detail.omitted_case);
     let mut jobs = hard.jobs(wanted);
     jobs.extend(jitter.jobs(|_| true));
-    let seeded = crowds.iter().map(|crowd| (crowd, 0));
-    let seeded = seeded.chain(held_out.iter().map(|crowd| (crowd, OTHER_PEOPLE)));
+    let shown = crowds.iter().map(|crowd| (crowd, 0));
+    let seeded = shown.chain(held_out.iter().map(|crowd| (crowd, OTHER_PEOPLE)));
     jobs.extend(seeded.map(|(&crowd, seed)| Cell::job(crowd, detail.bisections, seed)));
     let results = results(&jobs, store, listener)?;
     let points = |crowds: &[Rest], seed| -> Result<Vec<Cell>, LabError> {

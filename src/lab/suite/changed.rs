@@ -19,10 +19,10 @@ impl Changed {
 
     /// The changes in words; empty if there are none.
     pub fn text(&self) -> String {
-        let settings = self.settings.iter().map(|setting| format!("`{setting}`"));
+        let quoted = self.settings.iter().map(|setting| format!("`{setting}`"));
         let settings = match self.settings.len() {
             0 => None,
-            _ => Some(settings.collect::<Vec<_>>().join(", ") + " in every scene"),
+            _ => Some(quoted.collect::<Vec<_>>().join(", ") + " in every scene"),
         };
         let seeds = match &self.seeds[..] {
             [] => None,

@@ -111,8 +111,8 @@ impl Check {
     /// The value from these runs; `None` if one of them gives none.
     pub fn value<'a>(&self, run: impl Fn(&str) -> Option<&'a Summary>) -> Option<f64> {
         let runs = self.of.iter().map(|label| run(label));
-        let values = runs.flat_map(|run| self.quantity.iter().map(move |of| of.value(run?)));
-        let values: Vec<f64> = values.collect::<Option<_>>()?;
+        let found = runs.flat_map(|run| self.quantity.iter().map(move |of| of.value(run?)));
+        let values: Vec<f64> = found.collect::<Option<_>>()?;
         match self.function {
             Some(function) => Some(function.of(&values)),
             None => values.first().copied(),

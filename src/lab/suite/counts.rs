@@ -17,8 +17,8 @@ impl Report<'_> {
     /// How many values of each profile are as expected: a table with a line for each kind of case, then for values that
     /// the profile was fitted to, and for the others. `None` if no case has a kind.
     pub(super) fn counts(&self) -> Option<Table> {
-        let kinds = self.findings.iter();
-        let kinds = distinct(kinds.filter_map(|one| one.case.kind.as_deref()));
+        let findings = self.findings.iter();
+        let kinds = distinct(findings.filter_map(|one| one.case.kind.as_deref()));
         if kinds.is_empty() {
             return None;
         }

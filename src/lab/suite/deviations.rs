@@ -62,8 +62,8 @@ pub fn sheet(report: &Report) -> Option<(&'static str, Sheet)> {
     }
     let title = "Deviation of every value";
     let x = Axis::linear("deviation [tolerances]", [-FARTHEST - 0.5, FARTHEST + 0.5]);
-    let names = lines.iter().rev();
-    let names = names.map(|(finding, k)| format!("{}: {}", finding.case.name, name(finding, *k)));
+    let upward = lines.iter().rev();
+    let names = upward.map(|(finding, k)| format!("{}: {}", finding.case.name, name(finding, *k)));
     let panel = Panel::new("", x, Axis::names("", names), marks).with_legend(Corner::Beside);
     let size = [WIDTH, LINE * lines.len() as f64];
     (!lines.is_empty()).then(|| ("deviations", Sheet::new(title, 1, size, vec![panel])))

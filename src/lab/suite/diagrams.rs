@@ -33,12 +33,12 @@ struct Line<'a> {
 pub fn sheets(cases: &[Case], runs: &[Runs]) -> Vec<(&'static str, Sheet)> {
     let lines: Vec<Line> = cases.iter().filter_map(|case| line(case, runs)).collect();
     let of = |diagram| cases.iter().find(|case| case.diagram == Some(diagram));
-    let fundamental = [
+    let panels = [
         at_lines(&lines, runs),
         of(Diagram::SingleFile).and_then(|case| single_file(case, runs)),
         of(Diagram::EndlessCorridor).and_then(|case| corridor(case, runs)),
     ];
-    let fundamental: Vec<Panel> = fundamental.into_iter().flatten().collect();
+    let fundamental: Vec<Panel> = panels.into_iter().flatten().collect();
     let passages = lines
         .iter()
         .filter_map(|line| passages(line, runs))
@@ -91,8 +91,8 @@ fn profiles<'a>(runs: &'a [Runs<'a>]) -> impl Iterator<Item = (&'a str, Rgb)> {
 /// The mean of a value over the seeds of a profile; `None` if a seed lacks it.
 fn mean(runs: &[Runs], profile: &str, check: &Check) -> Option<f64> {
     let own = runs.iter().filter(|runs| runs.profile() == profile);
-    let values = own.map(|runs| check.value(|label| runs.of(label)));
-    let values: Vec<f64> = values.collect::<Option<_>>()?;
+    let means = own.map(|runs| check.value(|label| runs.of(label)));
+    let values: Vec<f64> = means.collect::<Option<_>>()?;
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
@@ -157,23 +157,23 @@ fn corridor(case: &Case, runs: &[Runs]) -> Option<Panel> {
 
 /// Density and speed at each line, joined to what was measured there.
 fn at_lines(lines: &[Line], runs: &[Runs]) -> Option<Panel> {
-    let measured = |line: &Line| [line.measured[1], line.measured[2]];
+    let of_line = |line: &Line| [line.measured[1], line.measured[2]];
     let mut marks = Vec::new();
     for (profile, color) in profiles(runs) {
-        let found = lines.iter().filter_map(|line| {
+        let simulated = lines.iter().filter_map(|line| {
             let [_, density, speed] = line.checks.map(|check| mean(runs, profile, check));
-            Some([measured(line), [density?, speed?]])
+            Some([of_line(line), [density?, speed?]])
         });
-        let found: Vec<[[f64; 2]; 2]> = found.collect();
-        let routes = found.iter();
-        marks.extend(routes.map(|&way| Mark::line(way, Style::full(color, 0.5, ""))));
+        let found: Vec<[[f64; 2]; 2]> = simulated.collect();
+        let links = found.iter();
+        marks.extend(links.map(|&ends| Mark::line(ends, Style::full(color, 0.5, ""))));
         let ends = found.iter().map(|way| way[1]);
         marks.push(Mark::dots(ends, Style::full(color, 2.4, "")));
     }
     if marks.is_empty() {
         return None;
     }
-    let measured = lines.iter().map(measured);
+    let measured = lines.iter().map(of_line);
     marks.push(Mark::dots(measured, Style::full(BLACK, 2.4, "")));
     let title = "gaps, door and corridors; black: measured";
     Some(speeds(title, "density [P/m²]", 8.0, marks))

@@ -41,15 +41,15 @@ impl Suite {
         check_keys(&from)?;
         let (_, mut keys) = from.parsed::<File>("`cases`")?;
         let mut grid = keys.grid.0.into_iter();
-        let profiles = grid.find(|(key, _)| key == PROFILE);
-        let profiles = profiles.map(|(_, names)| serde_json::from_value(names));
-        let profiles = profiles.transpose().map_err(|error| {
+        let axis = grid.find(|(key, _)| key == PROFILE);
+        let read = axis.map(|(_, names)| serde_json::from_value(names));
+        let given = read.transpose().map_err(|error| {
             from.invalid(Problem::new(
                 format!("grid.{PROFILE}"),
                 in_plain_words(&error.to_string()),
             ))
         })?;
-        let profiles: Vec<String> = profiles.unwrap_or_default();
+        let profiles: Vec<String> = given.unwrap_or_default();
         check_cases(&keys.cases, &profiles).map_err(|problem| from.invalid(problem))?;
         let cases = keys.cases.iter_mut();
         for why in cases.flat_map(|case| case.known_misses.values_mut()) {

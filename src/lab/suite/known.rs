@@ -87,11 +87,11 @@ impl Check {
 /// Says that something has no `what` of this name, and which ones it has.
 pub fn unknown<T: AsRef<str>>(of: &str, what: &str, name: &str, all: &[T]) -> String {
     let near = suggestion(name, all.iter().map(AsRef::as_ref));
-    let all: Vec<String> = all.iter().map(|name| shown(name.as_ref())).collect();
-    let all = if all.is_empty() {
+    let names: Vec<String> = all.iter().map(|name| shown(name.as_ref())).collect();
+    let all = if names.is_empty() {
         "none".to_owned()
     } else {
-        all.join(", ")
+        names.join(", ")
     };
     format!(
         "{} has no {what} `{}`{near} (it has {all})",

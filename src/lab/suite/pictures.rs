@@ -18,18 +18,18 @@ pub fn save(
     store: &Store,
     listener: &dyn Listener,
 ) -> Result<(), LabError> {
-    let drawn = cases
+    let pictures = cases
         .iter()
         .filter_map(|case| Some((&case.name, case.picture.as_ref()?)));
-    let drawn: Vec<(&String, &Moment)> = drawn.collect();
+    let drawn: Vec<(&String, &Moment)> = pictures.collect();
     listener.notes(&format!("drawing {} picture(s)", drawn.len()));
     side_by_side(drawn.len(), |k| {
         let (name, Moment { run, at_secs }) = drawn[k];
-        let cell = cells.iter().find(|cell| label(cell) == run);
-        let cell = cell.ok_or_else(|| LabError::missing(name, "run for its picture"))?;
+        let found = cells.iter().find(|cell| label(cell) == run);
+        let cell = found.ok_or_else(|| LabError::missing(name, "run for its picture"))?;
         let failed = |error| LabError::of(run, error);
-        let scenario = cell.case.scenario();
-        let scenario = scenario.map_err(|error| LabError::of(run, error))?;
+        let read = cell.case.scenario();
+        let scenario = read.map_err(|error| LabError::of(run, error))?;
         let mut simulation = Simulation::new(scenario.scene.clone()).map_err(failed)?;
         go_to(*at_secs, &mut simulation).map_err(failed)?;
         let (crowd, title) = (Crowd::of(&simulation), format!("{name}: {run}"));

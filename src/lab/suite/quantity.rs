@@ -163,8 +163,8 @@ impl OfWalks {
     fn value(&self, walks: &[Walk]) -> Option<f64> {
         let is_own = |walk: &&Walk| self.group.as_ref().is_none_or(|group| walk.group == *group);
         let own = walks.iter().filter(is_own);
-        let values: Option<Vec<f64>> = own.map(|walk| self.each.value(walk)).collect();
-        let values = values?;
+        let all: Option<Vec<f64>> = own.map(|walk| self.each.value(walk)).collect();
+        let values = all?;
         let found = MeanStd::of(&values);
         match self.take {
             Take::Mean => found.map(|found| found.mean),

@@ -91,12 +91,12 @@ impl<'a> Report<'a> {
             !one.is_passed() && is_own && !one.case.known_misses.contains_key(&one.profile)
         };
         let lines = self.findings.iter().filter(is_new).map(|finding| {
-            let missed = finding.checks.iter().filter(|check| !check.is_passed());
-            let missed = missed.map(|check| {
+            let wrong = finding.checks.iter().filter(|check| !check.is_passed());
+            let sentences = wrong.map(|check| {
                 let (value, expected) = (written(check.value), check.expected);
                 format!("{} is {value}, expected {expected}", check.quantity)
             });
-            let missed: Vec<String> = missed.collect();
+            let missed: Vec<String> = sentences.collect();
             let (case, profile) = (&finding.case.name, &finding.profile);
             let seed = finding
                 .seed
@@ -108,19 +108,17 @@ impl<'a> Report<'a> {
 
     /// Whether a profile passes a case with all seeds; `None` without a finding.
     fn is_passed(&self, case: &Case, profile: &str) -> Option<bool> {
-        let own = |one: &&Finding| one.case.name == case.name && one.profile == profile;
-        let mut own = self.findings.iter().filter(own).peekable();
+        let is_own = |one: &&Finding| one.case.name == case.name && one.profile == profile;
+        let mut own = self.findings.iter().filter(is_own).peekable();
         own.peek()?;
         Some(own.all(Finding::is_passed))
     }
 
     /// The known misses of a case with this outcome: profiles and reasons, in the order of the suite's profiles.
     fn known_misses(&self, case: &'a Case, passed: bool) -> Vec<(&'a str, &'a str)> {
-        let misses = case.known_misses.iter();
-        let misses = misses.filter(|(of, _)| self.is_passed(case, of) == Some(passed));
-        let mut misses: Vec<_> = misses
-            .map(|(of, why)| (of.as_str(), why.as_str()))
-            .collect();
+        let known = case.known_misses.iter();
+        let now = known.filter(|(of, _)| self.is_passed(case, of) == Some(passed));
+        let mut misses: Vec<_> = now.map(|(of, why)| (of.as_str(), why.as_str())).collect();
         misses.sort_by_key(|(of, _)| self.suite.profiles.iter().position(|own| own == of));
         misses
     }
@@ -164,8 +162,8 @@ impl<'a> Report<'a> {
             }
         }
         if !self.skipped.is_empty() {
-            let skipped = self.skipped.iter();
-            let skipped = skipped.map(|one| {
+            let without_data = self.skipped.iter();
+            let skipped = without_data.map(|one| {
                 let (name, title) = (&one.case.name, one.case.title());
                 format!("**{name}**, {title}: {}.", one.why)
             });
@@ -185,15 +183,15 @@ impl<'a> Report<'a> {
     /// How many cases each profile passes.
     fn overview(&self) -> String {
         let checks = self.findings.iter().flat_map(|one| &one.checks);
-        let mut walls = checks
+        let mut passages = checks
             .filter(|check| check.quantity == THROUGH_WALLS)
             .peekable();
-        let walls = match walls.peek().is_some() && walls.all(Judgment::is_passed) {
+        let walls = match passages.peek().is_some() && passages.all(Judgment::is_passed) {
             true => " In no run did anyone pass through a wall.",
             false => "",
         };
-        let counts = self.profiles.iter().map(|profile| self.counted(profile));
-        let counts = counts.collect::<Vec<_>>().join(", by ");
+        let counted = self.profiles.iter().map(|profile| self.counted(profile));
+        let counts = counted.collect::<Vec<_>>().join(", by ");
         format!("Passed by {counts}. Bold: not as expected.{walls}")
     }
 
@@ -276,11 +274,11 @@ impl<'a> Report<'a> {
 
     /// One row for each value.
     fn values(&self) -> Table {
-        let rows = self.findings.iter().flat_map(|finding| {
+        let checks = self.findings.iter().flat_map(|finding| {
             let checks = finding.checks.iter();
             checks.map(move |check| (finding, check))
         });
-        let rows: Vec<(&Finding, &Judgment)> = rows.collect();
+        let rows: Vec<(&Finding, &Judgment)> = checks.collect();
         let bound = |check: &Judgment, k: usize| {
             let bound = check.expected.bounds()[k];
             bound.is_finite().then_some(bound)
@@ -309,8 +307,8 @@ impl<'a> Report<'a> {
                 "passed": finding.is_passed(), "checks": finding.checks,
             })
         };
-        let skipped = self.skipped.iter();
-        let skipped = skipped.map(|one| json!({"case": one.case.name, "skipped": one.why}));
+        let without_data = self.skipped.iter();
+        let skipped = without_data.map(|one| json!({"case": one.case.name, "skipped": one.why}));
         let mut entries: Vec<Value> = self.findings.iter().map(entry).chain(skipped).collect();
         if self.changed.is_anything() {
             let entries = entries.iter_mut();

@@ -80,10 +80,10 @@ impl Suite {
         };
         for &case in &chosen.cases {
             let files = self.files_of(case).map(|data| {
-                let path = chosen.data.map(|folder| folder.join(&data.file));
-                let path = path.filter(|path| path.is_file());
                 let key = (data.run.clone(), data.setting.clone());
-                path.map(|path| (key, path)).ok_or(data)
+                let path = chosen.data.map(|folder| folder.join(&data.file));
+                let found = path.filter(|path| path.is_file());
+                found.map(|path| (key, path)).ok_or(data)
             });
             match files.collect::<Result<Vec<_>, _>>() {
                 Ok(files) => {
@@ -107,8 +107,8 @@ impl Suite {
         if !cases.is_empty() {
             check_runs(self, &study)?;
         }
-        let seeds = study.cells.iter().map(|cell| cell.case.seed);
-        let seeds = seeds.filter(|_| chosen.first_seed.is_some());
+        let all = study.cells.iter().map(|cell| cell.case.seed);
+        let seeds = all.filter(|_| chosen.first_seed.is_some());
         let changed = Changed {
             settings: chosen.settings.iter().map(Setting::brief).collect(),
             seeds: distinct(seeds),
@@ -153,31 +153,14 @@ impl<'a> Planned<'a> {
         let labels: BTreeSet<&str> = self.cases.iter().flat_map(|case| case.runs()).collect();
         let wanted = |cell: &&Cell| labels.contains(label(cell));
         let jobs = self.study.jobs(|cell| wanted(&cell));
-        let results = results(&jobs, store, listener)?;
+        let computed = results(&jobs, store, listener)?;
         let cells: Vec<&Cell> = self.study.cells.iter().filter(wanted).collect();
-        let of_cells = cells
-            .iter()
-            .map(|cell| results.of(&cell.to_string(), &cell.case.key));
-        let results: Vec<RunResult> = of_cells.collect::<Result<_, _>>()?;
-        let mut measured = Vec::new();
-        for run in self.data {
-            if let Some(cell) = cells.iter().find(|cell| label(cell) == run) {
-                let data = data::measured(&run, &cell.case)?;
-                measured.push((run, data));
-            }
-        }
+        let result = |cell: &&Cell| computed.of(&cell.to_string(), &cell.case.key);
+        let results: Vec<RunResult> = cells.iter().map(result).collect::<Result<_, _>>()?;
         let profiles = distinct(results.iter().map(|result| result.summary.profile.clone()));
-        let mut runs: BTreeMap<_, Vec<(&str, &Summary)>> = BTreeMap::new();
-        for (cell, RunResult { summary, .. }) in cells.iter().zip(&results) {
-            let profile = profiles
-                .iter()
-                .position(|profile| *profile == summary.profile);
-            let own = runs.entry((profile, cell.case.seed)).or_default();
-            own.push((label(cell), summary));
-        }
-        let measured = &measured;
-        let runs = runs.into_values().map(|own| Runs { own, measured });
-        let runs: Vec<Runs> = runs.collect();
+        let measured = of_data(self.data, &cells)?;
+        let own = cells.iter().copied().zip(&results);
+        let runs = by_seed(own, &profiles, &measured);
         let mut findings = Vec::new();
         for &case in &self.cases {
             for runs in &runs {
@@ -209,10 +192,36 @@ impl<'a> Planned<'a> {
     }
 }
 
+/// The measurements in the data from which runs begin, by the labels of the runs.
+fn of_data(labels: BTreeSet<String>, cells: &[&Cell]) -> Result<Vec<(String, Summary)>, LabError> {
+    let of = |run: String| {
+        let cell = cells.iter().find(|cell| label(cell) == run)?;
+        let data = data::measured(&run, &cell.case);
+        Some(data.map(|data| (run, data)))
+    };
+    labels.into_iter().filter_map(of).collect()
+}
+
+/// The results of each profile and seed, by the places of the profiles.
+fn by_seed<'r>(
+    results: impl Iterator<Item = (&'r Cell, &'r RunResult)>,
+    profiles: &[String],
+    measured: &'r [(String, Summary)],
+) -> Vec<Runs<'r>> {
+    let mut runs: BTreeMap<_, Vec<(&str, &Summary)>> = BTreeMap::new();
+    for (cell, RunResult { summary, .. }) in results {
+        let profile = profiles.iter().position(|name| *name == summary.profile);
+        let own = runs.entry((profile, cell.case.seed)).or_default();
+        own.push((label(cell), summary));
+    }
+    let of_seed = |own| Runs { own, measured };
+    runs.into_values().map(of_seed).collect()
+}
+
 /// The judgments of a case, and that no agent passed through a wall.
 fn judgments(case: &Case, runs: &Runs) -> Result<Vec<Judgment>, LabError> {
-    let checks = case.checks.iter().map(|check| check.judged(runs));
-    let mut checks: Vec<Judgment> = checks.collect::<Result<_, _>>()?;
+    let judged = case.checks.iter().map(|check| check.judged(runs));
+    let mut checks: Vec<Judgment> = judged.collect::<Result<_, _>>()?;
     let own = runs
         .own
         .iter()

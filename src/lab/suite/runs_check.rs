@@ -13,8 +13,8 @@ use scenario::{Problem, Scenario};
 /// Checks that all runs and quantities exist. Runs whose data are missing are not in the study.
 pub fn check_runs(suite: &Suite, study: &Study) -> Result<(), StudyError> {
     let invalid = |problem| suite.from.invalid(problem);
-    let cells = study.cells.iter().rev().map(|cell| (label(cell), cell));
-    let cells: BTreeMap<&str, &Cell> = cells.collect();
+    let labeled = study.cells.iter().rev().map(|cell| (label(cell), cell));
+    let cells: BTreeMap<&str, &Cell> = labeled.collect();
     let labels: Vec<&str> = cells
         .keys()
         .copied()
@@ -27,8 +27,8 @@ pub fn check_runs(suite: &Suite, study: &Study) -> Result<(), StudyError> {
         label => Err(unknown("the study's list", "label", label, &labels)),
     };
     each(&suite.cases, "cases", |case| {
-        let mut drawn = case.picture.iter().map(|picture| &picture.run);
-        let drawn = drawn.try_for_each(exists);
+        let mut runs = case.picture.iter().map(|picture| &picture.run);
+        let drawn = runs.try_for_each(exists);
         drawn.map_err(|reason| Problem::new("picture.run", reason))?;
         each(&case.checks, "checks", |check| {
             let runs = check.of.iter().try_for_each(exists);
@@ -88,8 +88,8 @@ impl Quantity {
                 missing("exit", name, exits.map(|exit| exit.name.clone()).collect())
             }
             Self::Other(Other::Walks(of)) => {
-                let walks = measured.filter(|one| matches!(one, Measurement::Walks(_)));
-                let walks = walks.filter_map(|one| {
+                let found = measured.filter(|one| matches!(one, Measurement::Walks(_)));
+                let walks = found.filter_map(|one| {
                     one.names()
                         .first()?
                         .strip_suffix("_agents")

@@ -52,7 +52,7 @@ impl MeanCurves<'_> {
         }
         let labels = distinct(all.iter().map(|(label, _)| label.as_str()));
         let names = distinct(all.iter().map(|(_, curve)| curve.name.as_str()));
-        let panels = names.iter().filter_map(|name| {
+        let drawn = names.iter().filter_map(|name| {
             let own = all.iter().filter(|(_, curve)| curve.name == *name);
             let lines = own.filter_map(|(label, curve)| {
                 let number = labels.iter().position(|other| other == label)?;
@@ -65,7 +65,7 @@ impl MeanCurves<'_> {
             });
             panel(&lines.collect::<Vec<_>>())
         });
-        let panels = with_legend(panels.collect(), COLUMNS);
+        let panels = with_legend(drawn.collect(), COLUMNS);
         let title = format!("{}; {BAND}", self.study.name);
         let columns = COLUMNS.min(panels.len().max(1));
         Some(Sheet::new(&title, columns, [220.0, 160.0], panels))

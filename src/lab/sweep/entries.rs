@@ -16,8 +16,8 @@ impl Entries {
     /// The label, and the other entries.
     pub(super) fn split_label(&self, place: &str) -> Result<(Option<String>, Self), Problem> {
         let is_label = |(key, _): &&(String, Value)| key == LABEL;
-        let others = self.0.iter().filter(|entry| !is_label(entry));
-        let others = Self(others.cloned().collect());
+        let unlabeled = self.0.iter().filter(|entry| !is_label(entry));
+        let others = Self(unlabeled.cloned().collect());
         match self.0.iter().find(is_label) {
             None => Ok((None, others)),
             Some((_, Value::String(label))) => Ok((Some(label.clone()), others)),

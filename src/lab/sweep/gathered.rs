@@ -8,6 +8,7 @@ use super::Study;
 use super::cell::Cell;
 use crate::error::LabError;
 use crate::gallery::distinct;
+use crate::jobs::Results;
 use analysis::statistics::MeanStd;
 use runs::case::RunResult;
 use runs::identity::ENGINE;
@@ -65,12 +66,10 @@ pub struct Combination<'a> {
 impl<'a> Gathered<'a> {
     /// The state of a study according to `store`.
     pub fn of(study: &'a Study, store: &Store) -> Self {
-        let found = |cell: &Cell| (store.result(&cell.case.key), store.failure(&cell.case.key));
-        let state = |cell: &Cell| match found(cell) {
-            (Ok(Some(result)), _) => State::Finished(Box::new(result)),
-            (Err(damaged), _) => State::Failed(damaged),
-            (_, Some(failure)) => State::Failed(failure.message),
-            (_, None) => State::Missing,
+        let state = |cell: &Cell| match Results(store).outcome(&cell.case.key) {
+            Some(Ok(result)) => State::Finished(Box::new(result)),
+            Some(Err(message)) => State::Failed(message),
+            None => State::Missing,
         };
         Self {
             study,
@@ -81,8 +80,8 @@ impl<'a> Gathered<'a> {
     /// All results as one object.
     pub fn json(&self) -> Value {
         let names = self.numbers();
-        let cells = self.study.cells.iter().zip(&self.states);
-        let cells = cells.map(|(cell, state)| {
+        let all = self.study.cells.iter().zip(&self.states);
+        let cells = all.map(|(cell, state)| {
             let mut entry = json!({
                 "cell": cell.number,
                 "settings": settings(cell),
@@ -101,8 +100,8 @@ impl<'a> Gathered<'a> {
             let entry = |mean: &MeanStd| {
                 json!({ "mean": mean.mean, "ci95": mean.interval_95(), "n": mean.count })
             };
-            let entries = combination.means.iter();
-            let entries = entries.map(|mean| mean.as_ref().map_or(Value::Null, entry));
+            let means = combination.means.iter();
+            let entries = means.map(|mean| mean.as_ref().map_or(Value::Null, entry));
             json!({
                 "settings": combination.cells.first().map(settings),
                 "runs": combination.results.len(),

@@ -102,8 +102,8 @@ impl Gathered<'_> {
         drawing: &Drawing,
     ) -> Result<Vec<(usize, String)>, DrawingError> {
         let has_value = |k: usize| combinations.iter().any(|one| one.means[k].is_some());
-        let all = self.numbers().into_iter().enumerate();
-        let all: Vec<(usize, String)> = all.filter(|(k, _)| has_value(*k)).collect();
+        let numbers = self.numbers().into_iter().enumerate();
+        let all: Vec<(usize, String)> = numbers.filter(|(k, _)| has_value(*k)).collect();
         if drawing.measurements.is_empty() {
             return Ok(all.into_iter().take(MOST_PANELS).collect());
         }
@@ -126,8 +126,8 @@ impl Gathered<'_> {
             return Ok(drawing.over.clone());
         }
         let numbers = |axis: &&String| {
-            let values = self.study.cells.iter().filter_map(|cell| cell.value(axis));
-            let values: Vec<&Value> = values.collect();
+            let found = self.study.cells.iter().filter_map(|cell| cell.value(axis));
+            let values: Vec<&Value> = found.collect();
             values.iter().all(|value| value.is_number()) && values.iter().any(|v| *v != values[0])
         };
         let label = || axes.iter().find(|axis| *axis == LABEL);
@@ -151,8 +151,8 @@ fn lines(
         for (number, line) in names.iter().enumerate() {
             let own = combinations.iter();
             let own = own.filter(|one| other(one, &[x], axes) == *line);
-            let places = own.filter_map(|one| Some((scale.place(one)?, one.means[*k].as_ref()?)));
-            let mut places: Vec<MeanAt> = places.collect();
+            let points = own.filter_map(|one| Some((scale.place(one)?, one.means[*k].as_ref()?)));
+            let mut places: Vec<MeanAt> = points.collect();
             places.sort_by(|a, b| a.0.total_cmp(&b.0));
             let (area, line) = line_marks(&places, line_color(number), line, scale.numeric);
             bands.extend(area);

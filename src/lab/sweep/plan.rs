@@ -112,16 +112,16 @@ impl File {
         let list = self.list.iter_mut();
         list.for_each(|list| {
             list.retain_mut(|Entries(entries)| {
-                let label = entries.iter().find(|(key, _)| key == LABEL);
-                let label = label.and_then(|(_, label)| label.as_str());
+                let labeled = entries.iter().find(|(key, _)| key == LABEL);
+                let label = labeled.and_then(|(_, label)| label.as_str());
                 let own = runs.iter().filter(|data| Some(data.run.as_str()) == label);
-                let paths = own.map(|data| {
+                let found = own.map(|data| {
                     let path = changes
                         .data
                         .get(&(data.run.clone(), data.setting.clone()))?;
                     Some((data.setting.clone(), path.to_string_lossy().into()))
                 });
-                let paths: Option<Vec<(String, Value)>> = paths.collect();
+                let paths: Option<Vec<(String, Value)>> = found.collect();
                 let is_there = paths.is_some();
                 entries.extend(paths.into_iter().flatten());
                 is_there
@@ -169,12 +169,12 @@ impl Plan {
             rows.push(choices(&entries, &place, Some(root))?);
             labels.push(label.map(|label| (LABEL.to_owned(), label.into())));
         }
-        let grid = file.grid.0.iter();
-        let grid = grid.map(|(key, values)| axis(key, values, root));
-        let grid = grid.collect::<Result<Vec<_>, _>>()?;
+        let written = file.grid.0.iter();
+        let checked = written.map(|(key, values)| axis(key, values, root));
+        let grid = checked.collect::<Result<Vec<_>, _>>()?;
         let label = labels.iter().any(Option::is_some);
-        let varied = rows.iter().flatten().chain(grid.iter().flatten());
-        let varied = varied.map(|choice| choice.key.clone());
+        let choices = rows.iter().flatten().chain(grid.iter().flatten());
+        let varied = choices.map(|choice| choice.key.clone());
         let mut plan = Self {
             names: distinct(label.then(|| LABEL.to_owned()).into_iter().chain(varied)),
             scenario: match &file.scenario {
@@ -198,8 +198,8 @@ impl Plan {
 
     /// The number of cells.
     fn cells(&self) -> Result<usize, Problem> {
-        let sizes = self.grid.iter().map(Vec::len);
-        let sizes = sizes.chain([self.rows.len(), self.seeds.len()]);
+        let axes = self.grid.iter().map(Vec::len);
+        let sizes = axes.chain([self.rows.len(), self.seeds.len()]);
         let count = sizes.map(|size| size as f64).product::<f64>();
         if count > MOST_CELLS as f64 {
             let reason = format!("makes {count} cells; at most {MOST_CELLS} are allowed");
@@ -246,10 +246,10 @@ impl Plan {
 
     /// Rejects settings of every cell that would override what the grid or the seeds vary.
     fn refuse_varied(&self, given: &[Setting]) -> Result<(), Problem> {
-        let axes = self.grid.iter().filter_map(|axis| axis.first());
-        let axes = axes.filter_map(|axis| Some((format!("grid.{}", axis.key), axis.path()?)));
-        let seeds = self.seeds[0].as_ref();
-        let seeds = seeds.map(|seed| ("seeds".to_owned(), seed.path()));
+        let firsts = self.grid.iter().filter_map(|axis| axis.first());
+        let axes = firsts.filter_map(|axis| Some((format!("grid.{}", axis.key), axis.path()?)));
+        let first = self.seeds[0].as_ref();
+        let seeds = first.map(|seed| ("seeds".to_owned(), seed.path()));
         for (place, path) in axes.chain(seeds) {
             let is_part =
                 |of: &&Setting| of.path().starts_with(path) || path.starts_with(of.path());
@@ -270,8 +270,8 @@ impl Plan {
             digit
         };
         let seed = self.seeds[digit(self.seeds.len())].clone();
-        let grid = self.grid.iter().rev();
-        let grid: Vec<&Choice> = grid.map(|axis| &axis[digit(axis.len())]).collect();
+        let axes = self.grid.iter().rev();
+        let grid: Vec<&Choice> = axes.map(|axis| &axis[digit(axis.len())]).collect();
         let row = digit(self.rows.len());
         let (row, label) = (&self.rows[row], &self.labels[row]);
         let varied: Vec<&Choice> = row.iter().chain(grid.into_iter().rev()).collect();
@@ -305,8 +305,8 @@ fn varied_scenario(rows: &[Vec<Choice>], grid: &[Vec<Choice>]) -> Result<Source,
         })
     };
     let in_every_row: Option<Vec<Source>> = rows.iter().map(|row| of(row)).collect();
-    let found = in_every_row.and_then(|sources| sources.into_iter().next());
-    let found = found.or_else(|| grid.iter().find_map(|axis| of(axis)));
+    let common = in_every_row.and_then(|sources| sources.into_iter().next());
+    let found = common.or_else(|| grid.iter().find_map(|axis| of(axis)));
     let reason = "is missing: the name of a scenario (see `sandbox list`), or a file";
     found.ok_or_else(|| Problem::new(SCENARIO, reason))
 }

@@ -10,11 +10,12 @@ use super::plan::{Changes, File, Plan};
 use super::written::Written;
 use crate::error::LabError;
 use crate::jobs::each;
+use runs::case::Source;
 use runs::error::{RunError, StoreError};
 use runs::job::Job;
 use runs::memory::Memory;
 use scenario::quote::shown;
-use scenario::{Problem, ScenarioError};
+use scenario::{Problem, ScenarioError, input};
 
 /// The maximum length of a name, bytes: results add to it, and file names are limited.
 const LONGEST_NAME: usize = 200;
@@ -126,6 +127,26 @@ impl Study {
         Self::changed(&Written::open(path, FOLDER)?, &Changes::default(), memory)
     }
 
+    /// The study in a file, by its keys, or the built-in one of this name; `None` if a scenario or nothing has this
+    /// name.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn named(name: &str, memory: Option<u64>) -> Result<Option<Self>, StudyError> {
+        /// The keys that studies have, and scenarios do not.
+        const KEYS: [&str; 4] = ["scenario", "grid", "list", "seeds"];
+        let path = Path::new(name);
+        let has_keys = |document: Value| KEYS.iter().any(|key| document.get(key).is_some());
+        let is_study = match path.is_file() {
+            true => {
+                let text = input::text(path).unwrap_or_default();
+                serde_json::from_str(&text).is_ok_and(has_keys)
+            }
+            false => Source::shipped(name).is_none() && Written::built_in(FOLDER, name).is_ok(),
+        };
+        is_study.then(|| Self::open(path, memory)).transpose()
+    }
+
     /// A study that is built into the program: a file under `scenarios/studies/`, without its extension. `seeds`
     /// replaces the file's number of seeds.
     ///
@@ -166,8 +187,8 @@ impl Study {
         check_name(&name).map_err(invalid)?;
         let shared = Memory::new(memory);
         // Not on rayon's threads: these could start another cell while they hold memory for the first.
-        let cells = each(plan.count, |index| plan.cell(index, &shared))?.into_iter();
-        let cells = cells.enumerate().map(|(index, cell)| {
+        let checked = each(plan.count, |index| plan.cell(index, &shared))?.into_iter();
+        let cells = checked.enumerate().map(|(index, cell)| {
             cell.map_err(|error| StudyError::Cell {
                 file: from.file(),
                 cell: index + 1,

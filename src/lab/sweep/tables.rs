@@ -79,8 +79,8 @@ impl Gathered<'_> {
             Block::figure(&self.study.curves_name(), sheet, caption)
         }));
         let document = Document::of(format!("Results of the study {name}"), blocks);
-        let findings = Findings::new(&self.study.results_name(), document, self.json());
-        let mut findings = self.add_tables(findings)?;
+        let whole = Findings::new(&self.study.results_name(), document, self.json());
+        let mut findings = self.add_tables(whole)?;
         if let Some(rows) = curves.csv()? {
             findings.tables.push((self.study.curves_name(), rows));
         }
@@ -180,8 +180,8 @@ impl Gathered<'_> {
         axes: &[String],
         write: fn(&Value) -> String,
     ) -> Columns<'r, Row<'r>> {
-        let columns = Table::of(rows).column("cell", |(cell, _)| cell.number.to_string());
-        let mut columns = with_axes(columns, axes, write, |(cell, _)| Some(cell));
+        let numbered = Table::of(rows).column("cell", |(cell, _)| cell.number.to_string());
+        let mut columns = with_axes(numbered, axes, write, |(cell, _)| Some(cell));
         if !self.study.varies_seed() {
             columns = columns.column("seed", |(cell, _)| cell.case.seed.to_string());
         }

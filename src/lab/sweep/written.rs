@@ -106,9 +106,9 @@ impl Written {
         let mut deserializer = serde_json::Deserializer::from_str(&self.text);
         serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
             let path = error.path().to_string();
-            let said = error.inner();
-            let place = format!(" at line {} column {}", said.line(), said.column());
-            let said = said.to_string();
+            let problem = error.inner();
+            let place = format!(" at line {} column {}", problem.line(), problem.column());
+            let said = problem.to_string();
             let reason = in_plain_words(said.strip_suffix(&place).unwrap_or(&said));
             Problem::new(if path == "." { String::new() } else { path }, reason)
         })

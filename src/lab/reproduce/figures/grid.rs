@@ -113,8 +113,8 @@ fn panel(
     );
     let digits = quantity.digits;
     for (k, (row, estimate)) in block.iter().zip(&estimates).enumerate() {
-        let waves = row.values(QUANTITIES[0].metric);
-        let waves = waves.into_iter().flatten().count();
+        let seeds = row.values(QUANTITIES[0].metric);
+        let waves = seeds.into_iter().flatten().count();
         let (text, is_light) = match estimate {
             None if waves > 1 => ("not clear".to_owned(), true),
             None => ("no wave".to_owned(), true),

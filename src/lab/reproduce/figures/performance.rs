@@ -18,9 +18,9 @@ pub const PRODUCT: Product = Product {
     has_figure: true,
     find: |product, studies| {
         let cells = studies.iter().flat_map(|study| &study.states);
-        let times = cells.map(|state| state.result()?.summary.data(FrameTime::NAME));
-        let times: Option<Vec<StageTimes>> = times.collect();
-        let times = times.ok_or_else(|| LabError::missing("fig11", FrameTime::NAME))?;
+        let of_cells = cells.map(|state| state.result()?.summary.data(FrameTime::NAME));
+        let complete: Option<Vec<StageTimes>> = of_cells.collect();
+        let times = complete.ok_or_else(|| LabError::missing("fig11", FrameTime::NAME))?;
         let threads = times.first().map_or(0, |time| time.threads);
         let machine = format!("{threads} threads of this machine");
         let findings = product.figure(sheet(&times, &machine));

@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use crate::error::LabError;
 use crate::sweep::Gathered;
+use engine::geometry::Polygon;
 use output::colors::{self, ColorMap};
 use output::plot::{Axis, ColorBar, Disc, GRAY, Mark, Panel, Sheet, Style};
 use scenario::measurements::Snapshot;
@@ -101,11 +102,10 @@ impl Snapshots {
         let (mut panels, mut row_titles) = (Vec::new(), Vec::new());
         for (k, (label, title)) in labels.iter().zip(titles).enumerate() {
             let (cell, result) = study.labeled(label)?;
-            let walls = cell.case.scenario();
-            let walls = walls.map_err(|error| LabError::of(*label, error))?;
-            let walls = walls.scene.walls.obstacles().iter();
-            let walls = walls.map(|wall| wall.points().iter().map(|r| [r.x, r.y]).collect());
-            let walls: Vec<Vec<[f64; 2]>> = walls.collect();
+            let scenario = cell.case.scenario();
+            let scene = scenario.map_err(|error| LabError::of(*label, error))?.scene;
+            let outline = |wall: &Polygon| wall.points().iter().map(|r| [r.x, r.y]).collect();
+            let walls: Vec<Vec<[f64; 2]>> = scene.walls.obstacles().iter().map(outline).collect();
             // (a), (b), …
             let letter = char::from(b'a' + (k % 26) as u8);
             for &time in self.times {
@@ -115,8 +115,8 @@ impl Snapshots {
                     (true, _) => String::new(),
                 };
                 let name = Snapshot::name(time);
-                let snapshot = result.summary.data(&name);
-                let snapshot = snapshot.ok_or_else(|| LabError::missing(*label, name))?;
+                let data = result.summary.data(&name);
+                let snapshot = data.ok_or_else(|| LabError::missing(*label, name))?;
                 panels.push(self.panel(title, &snapshot, &walls));
             }
             row_titles.extend(many.then(|| format!("({letter}) {title}")));

@@ -30,9 +30,9 @@ pub const PRODUCT: Product = Product {
     has_figure: true,
     find: |product, studies| {
         let study = &studies[0];
-        let runs = LABELS.into_iter().zip(GAS_CONSTANTS);
-        let runs = runs.map(|(label, k)| Speed::of(study, label, k));
-        let runs: Vec<Speed> = runs.collect::<Result<_, _>>()?;
+        let pairs = LABELS.into_iter().zip(GAS_CONSTANTS);
+        let speeds = pairs.map(|(label, k)| Speed::of(study, label, k));
+        let runs: Vec<Speed> = speeds.collect::<Result<_, _>>()?;
         let findings = product.figure(sheet(&runs));
         Ok(findings.with_table(product.name, &table(&runs))?)
     },
@@ -65,8 +65,8 @@ impl Speed {
     fn of(study: &Gathered, label: &str, gas_constant: f64) -> Result<Self, LabError> {
         let (_, result) = study.labeled(label)?;
         let with = |modulus| sound::speed_with_contacts(gas_constant, AGENT_STIFFNESS, modulus);
-        let seen = result.summary.data(WaveData::NAME);
-        let seen = seen.ok_or_else(|| LabError::missing(label, "wave"))?;
+        let data = result.summary.data(WaveData::NAME);
+        let seen = data.ok_or_else(|| LabError::missing(label, "wave"))?;
         Ok(Self {
             gas_constant,
             seen,
