@@ -288,12 +288,12 @@ fn move_freely(
 /// The largest squared distance between two positions of an agent of a block, m².
 #[inline(always)]
 fn farthest(positions: &[Vector], before: &[Vector]) -> f64 {
-    let mut routes = [0.0; BLOCK];
+    let mut squares = [0.0; BLOCK];
     let pairs = positions.iter().zip(before);
-    for (way, (position, start)) in routes.iter_mut().zip(pairs) {
-        *way = (position - start).norm_squared();
+    for (square, (position, start)) in squares.iter_mut().zip(pairs) {
+        *square = (position - start).norm_squared();
     }
-    greatest(&routes, |&way| way)
+    greatest(&squares, |&square| square)
 }
 
 /// Finds the shifts of the agents of a block since the sort, strip by strip.

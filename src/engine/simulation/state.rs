@@ -100,8 +100,8 @@ impl Simulation {
             return Err(StateError); // the saved agents were not in the order of their cells
         }
         agents.position = positions;
-        let routes = agents.position.iter().zip(neighbors.sorted_at());
-        let squares = routes.map(|(now, then)| (now - then).norm_squared());
+        let moves = agents.position.iter().zip(neighbors.sorted_at());
+        let squares = moves.map(|(now, then)| (now - then).norm_squared());
         let farthest = squares.fold(0.0, f64::max);
         let mut strips = neighbors.take_strips();
         shift(&agents.position, neighbors.sorted_at(), &mut strips);

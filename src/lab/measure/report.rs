@@ -164,12 +164,12 @@ fn flows(crossings: &[Crossings], flow_of: Passages) -> Table {
     let directed = crossings.iter().zip(1_usize..).flat_map(|(line, number)| {
         [(1, "forward"), (-1, "backward")].map(|(way, name)| (number, name, line.way(way, flow_of)))
     });
-    let routes: Vec<(usize, &str, Way)> = directed.collect();
+    let rows: Vec<(usize, &str, Way)> = directed.collect();
     let passages = |way: &Way| {
         let between = way.part.map(|part| part.passages);
         between.map_or("–".to_owned(), |[n, m]| format!("{n}–{m}"))
     };
-    Table::of(&routes)
+    Table::of(&rows)
         .column("line", |row| row.0)
         .column("direction", |row| row.1)
         .column("passages", |row| row.2.passages)

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::error::Problem;
-use crate::file::schema::{allows, resolved, routes};
+use crate::file::schema::{allows, alternatives, resolved};
 
 /// A list of points is a list of lists of numbers.
 const POINTS: usize = 2;
@@ -47,8 +47,8 @@ fn depth(value: &Value) -> Option<usize> {
 /// The numbers of lists around numbers that a schema has; empty if it has other parts.
 fn depths(schema: &'static Value) -> Vec<usize> {
     let schema = resolved(schema);
-    match routes(schema) {
-        Some(routes) => routes.flat_map(depths).collect(),
+    match alternatives(schema) {
+        Some(alternatives) => alternatives.flat_map(depths).collect(),
         None if allows(schema, "array") => {
             let items = depths(&schema["items"]);
             items.into_iter().map(|depth| depth + 1).collect()

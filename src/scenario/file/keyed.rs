@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use crate::error::Problem;
 use crate::error::quote::shown;
-use crate::file::schema::{resolved, routes};
+use crate::file::schema::{alternatives, resolved};
 
 /// The keys of which such an object has exactly one, each with the schema of its value.
 struct Kinds {
@@ -34,7 +34,7 @@ impl Kinds {
             let (keys, noun) = (keys.collect::<Option<_>>()?, noun?);
             Some(Self { noun, keys })
         });
-        own.or_else(|| routes(schema)?.find_map(Self::of))
+        own.or_else(|| alternatives(schema)?.find_map(Self::of))
     }
 
     fn find(&self, key: &str) -> Option<&'static Value> {
@@ -68,8 +68,8 @@ impl Kinds {
             [one] => {
                 let other = given.keys().find(|key| *key != one)?;
                 let inner = resolved(self.find(one)?);
-                let is_inner = routes(inner).is_some_and(|mut routes| {
-                    routes.any(|way| !resolved(way)["properties"][other].is_null())
+                let is_inner = alternatives(inner).is_some_and(|mut alternatives| {
+                    alternatives.any(|way| !resolved(way)["properties"][other].is_null())
                 });
                 let (one, other) = (shown(one), shown(other));
                 Some(

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::error::numbers::plain;
 use crate::file::File;
 use crate::file::range::{Range, required};
-use crate::file::schema::{allows, property, resolved, routes, words_of};
+use crate::file::schema::{allows, alternatives, property, resolved, words_of};
 use crate::keys::catalog::Parameters;
 use crate::keys::names::names;
 
@@ -58,7 +58,7 @@ pub fn is_text(key: &str) -> bool {
 /// Whether the value of `key` is an object that may be empty.
 pub fn may_be_empty(key: &str) -> bool {
     let schema = resolved(property(key));
-    let mut others = routes(schema).into_iter().flatten();
+    let mut others = alternatives(schema).into_iter().flatten();
     let schema = match (others.next(), others.next()) {
         (Some(only), None) => resolved(only),
         _ => schema,
@@ -72,9 +72,9 @@ fn words(schema: &'static Value) -> String {
         let definition = resolved(schema);
         return words_of(definition).unwrap_or_else(|| words(definition));
     }
-    if let Some(routes) = routes(schema) {
+    if let Some(alternatives) = alternatives(schema) {
         let (constants, others): (Vec<_>, Vec<_>) =
-            routes.partition(|way| way["const"] != Value::Null);
+            alternatives.partition(|way| way["const"] != Value::Null);
         let constants = one_of(constants.iter().map(|way| plain(&way["const"])).collect());
         let others = others.into_iter().map(words);
         let all = others.chain(Some(constants).filter(|words| !words.is_empty()));
@@ -127,9 +127,9 @@ fn collect(
     }
     let schema = resolved(schema);
     let lists = ["anyOf", "oneOf"].map(|key| schema[key].as_array());
-    let routes = || lists.into_iter().flatten().flatten();
+    let alternatives = || lists.into_iter().flatten().flatten();
     // The keys that tell alternatives apart.
-    let first_keys = routes().filter_map(|way| way["required"][0].as_str());
+    let first_keys = alternatives().filter_map(|one| one["required"][0].as_str());
     let keyed: Vec<&str> = first_keys.collect();
     let keys = || schema["properties"].as_object().into_iter().flatten();
     let mut line = Vec::new();
@@ -144,7 +144,7 @@ fn collect(
     if !line.is_empty() {
         lines.push((path.to_owned(), line.join(", ")));
     }
-    for way in routes().chain(schema.get("items")) {
+    for way in alternatives().chain(schema.get("items")) {
         match way["properties"].as_object() {
             Some(keys) if !keyed.is_empty() => {
                 for (key, value) in keys {

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use crate::error::numbers::brief;
 use crate::error::quote::shown;
 use crate::error::{Problem, Under, in_plain_words};
-use crate::file::schema::{allows, resolved, root, routes, words_of};
+use crate::file::schema::{allows, alternatives, resolved, root, words_of};
 use crate::file::{brackets, keyed};
 
 /// Rejects numbers out of range, empty names and lists, and missing keys. Also rejects wrong types that serde would
@@ -104,8 +104,8 @@ fn check_names_in(schema: &'static Value, value: &Value) -> Result<(), Problem> 
 }
 
 fn may_be_null(schema: &Value) -> bool {
-    let mut routes = schema["anyOf"].as_array().into_iter().flatten();
-    allows(schema, "null") || routes.any(|way| allows(way, "null"))
+    let mut alternatives = schema["anyOf"].as_array().into_iter().flatten();
+    allows(schema, "null") || alternatives.any(|one| allows(one, "null"))
 }
 
 /// Rejects values of another type in place of an object, a number or a list, and lists of another length in place of a
@@ -149,7 +149,7 @@ fn not_a_list(schema: &'static Value, value: &Value) -> Problem {
 /// fits; else, for a list, the first that allows lists.
 fn chosen(schema: &'static Value, value: &Value) -> Option<&'static Value> {
     let schema = resolved(schema);
-    let Some(all) = routes(schema) else {
+    let Some(all) = alternatives(schema) else {
         return Some(schema);
     };
     let all: Vec<&'static Value> = all.collect();

@@ -104,11 +104,11 @@ pub fn resolved(schema: &'static Value) -> &'static Value {
 }
 
 /// The alternatives of a schema that has some, without `null`.
-pub fn routes(schema: &'static Value) -> Option<impl Iterator<Item = &'static Value>> {
+pub fn alternatives(schema: &'static Value) -> Option<impl Iterator<Item = &'static Value>> {
     let mut keys = ["anyOf", "oneOf"].into_iter();
-    let routes = keys.find_map(|key| schema[key].as_array())?;
-    let only_routes = schema.get("type").is_none(); // else they are conditions on its object
-    only_routes.then(|| routes.iter().filter(|way| way["type"] != "null"))
+    let listed = keys.find_map(|key| schema[key].as_array())?;
+    let has_no_type = schema.get("type").is_none(); // else they are conditions on its object
+    has_no_type.then(|| listed.iter().filter(|one| one["type"] != "null"))
 }
 
 /// Whether the schema allows this JSON type.

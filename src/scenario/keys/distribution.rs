@@ -141,15 +141,15 @@ pub struct BoundedExponential {
 
 /// The schema of a number in `range` or a distribution.
 fn draw(generator: &mut SchemaGenerator, [min, max]: [f64; 2], words: &[&str]) -> Schema {
-    let mut routes = vec![
+    let mut alternatives = vec![
         serde_json::json!({"type": "number", "minimum": min, "maximum": max}),
         generator.subschema_for::<Spread>().to_value(),
         serde_json::json!({"type": "null"}),
     ];
     if !words.is_empty() {
-        routes.insert(1, serde_json::json!({"type": "string", "enum": words}));
+        alternatives.insert(1, serde_json::json!({"type": "string", "enum": words}));
     }
-    json_schema!({ "anyOf": Value::from(routes) })
+    json_schema!({ "anyOf": Value::from(alternatives) })
 }
 
 pub fn speed(generator: &mut SchemaGenerator) -> Schema {

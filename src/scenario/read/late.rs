@@ -150,9 +150,9 @@ pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
                 let numbers = stages.iter().flat_map(|stage| &stage.places);
                 let places = numbers.map(|&place| &scene.journeys.places[usize::from(place)]);
                 let exits = places.filter(|place| place.is_exit());
-                let routes =
+                let distances =
                     exits.map(|exit| (exit.nearest_point(agent.position) - agent.position).norm());
-                routes.reduce(f64::min)?
+                distances.reduce(f64::min)?
             }
             None => (agent.goal - agent.position).norm() - group.removal_radius?,
         };

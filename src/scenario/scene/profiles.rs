@@ -67,12 +67,12 @@ fn custom_profile(custom: &CustomProfile, parameters: &Parameters) -> Result<Pro
 }
 
 fn checked(custom: &CustomProfile) -> Result<(), Problem> {
-    let routes = [
+    let forms = [
         custom.base.is_some(),
         custom.navigation.is_some(),
         custom.blend.is_some(),
     ];
-    if routes.into_iter().filter(|&given| given).count() != 1 {
+    if forms.into_iter().filter(|&given| given).count() != 1 {
         let reason = "needs exactly one of `base`, `navigation` and `blend`";
         return Err(Problem::new("", reason));
     }

@@ -86,8 +86,8 @@ pub fn between_borders(
     // The heading past both points that turns farthest to the left (`sign` 1) or to the right (−1).
     let farthest = |points: [Option<(Vector, f64)>; 2], sign: f64| {
         let points = points.into_iter().flatten();
-        let routes = points.map(|(point, gap)| (past(point, true, sign * gap), point.norm()));
-        routes.reduce(|a, b| if sign * a.0.perp(&b.0) > 0.0 { b } else { a })
+        let headings = points.map(|(point, gap)| (past(point, true, sign * gap), point.norm()));
+        headings.reduce(|a, b| if sign * a.0.perp(&b.0) > 0.0 { b } else { a })
     };
     let least = farthest([on_right, jambs.map(|[right, _]| right)], 1.0);
     let most = farthest([on_left, jambs.map(|[_, left]| left)], -1.0);
