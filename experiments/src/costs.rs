@@ -9,7 +9,7 @@ use sandbox::lab::gallery::around;
 use sandbox::lab::jobs::results;
 use sandbox::lab::sweep::Study;
 use sandbox::output::document::{Block, Document, Findings};
-use sandbox::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
+use sandbox::output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
 use sandbox::output::table::Table;
 use sandbox::runs::case::{Case, RunResult};
 use sandbox::runs::error::RunError;
@@ -52,7 +52,7 @@ pub fn costs(
         });
     }
     let table = columns.table();
-    let styles = [line_color(0), GRAY, line_color(1), line_color(2), GRAY];
+    let colors = [line_color(0), GRAY, line_color(1), line_color(2), BLACK];
     let panel = |name: &String| {
         let points = |k: usize| {
             rows.iter().filter_map(move |(_, answer, secs)| {
@@ -61,7 +61,7 @@ pub fn costs(
             })
         };
         let along = |axis: usize| (0..5).flat_map(points).map(move |point| point[axis]);
-        let mark = |k: usize| Mark::dots(points(k), Style::full(styles[k], 2.2, KINDS[k]));
+        let mark = |k: usize| Mark::dots(points(k), Style::full(colors[k], 2.2, KINDS[k]));
         let x = Axis::log("computing time [s]", around(along(0), 1.3));
         let y = Axis::log(&format!("error of {name} [%]"), around(along(1), 1.3));
         Panel::new("", x, y, (0..5).map(mark).collect()).with_legend(Corner::Beside)
