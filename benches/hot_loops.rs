@@ -9,7 +9,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::density::from_agents;
 use sandbox::engine::forces::near::{self, PairCoefficients, Wanted};
-use sandbox::engine::forces::rvo::{Rvo, Scratch, Wish};
+use sandbox::engine::forces::rvo::{Preference, Rvo, Scratch};
 use sandbox::engine::forces::social::SocialForce;
 use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::math::Vector;
@@ -125,7 +125,7 @@ fn rvo(criterion: &mut Criterion) {
         bencher.iter(|| {
             for i in (0..AGENTS as usize).step_by(every) {
                 let preferred_velocity = frame.fields.preferred_velocity[i];
-                let wish = Wish {
+                let wish = Preference {
                     preferred_velocity,
                     max_speed,
                 };

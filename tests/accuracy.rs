@@ -1,4 +1,4 @@
-//! Work and precision: scenes and knobs are valid, errors decrease with the time step, and the command writes its
+//! Work and precision: scenes and choices are valid, errors decrease with the time step, and the command writes its
 //! tables and pictures.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::common::{pictures, program};
 use sandbox::engine::boundary::WallMethod;
 use sandbox::lab::accuracy::{
-    Kind, Lyapunov, Measured, Motion, SAMPLES, SCENES, Scene, Trial, better, cheapest, knobs,
+    Kind, Lyapunov, Measured, Motion, SAMPLES, SCENES, Scene, Trial, better, cheapest, choices,
     limit, trials,
 };
 use sandbox::scenario::{Scenario, Setting};
@@ -25,14 +25,14 @@ fn knobs_are_tried_in_all_scenes_where_they_change_something() {
     for scene in &SCENES {
         let (scenario, trials) = tried(scene);
         let needs = scenario.scene.needs();
-        let acts = |knob: &&str| match *knob {
+        let acts = |choice: &&str| match *choice {
             "coarse" | "candidates" => needs.rvo,
             "tolerance" => needs.social,
             "walls" => needs.pairs.pressure && !scenario.scene.walls.is_empty(),
             _ => true,
         };
-        let expected: BTreeSet<&str> = knobs().into_iter().filter(acts).collect();
-        let found: BTreeSet<&str> = trials.iter().map(|trial| trial.knob.as_str()).collect();
+        let expected: BTreeSet<&str> = choices().into_iter().filter(acts).collect();
+        let found: BTreeSet<&str> = trials.iter().map(|trial| trial.choice.as_str()).collect();
         assert_eq!(found, expected, "{}", scene.name);
     }
 }
@@ -47,10 +47,10 @@ fn a_knob_has_the_same_values_in_all_scenes_but_statistics_skip_the_finest_step(
         let mut own: BTreeMap<String, Vec<Vec<String>>> = BTreeMap::new();
         for trial in tried(scene).1 {
             let settings = trial.settings.iter().map(Setting::to_string).collect();
-            own.entry(trial.knob).or_default().push(settings);
+            own.entry(trial.choice).or_default().push(settings);
         }
-        for (knob, own) in own {
-            let mut all = values.entry(knob).or_insert(own.clone()).clone();
+        for (choice, own) in own {
+            let mut all = values.entry(choice).or_insert(own.clone()).clone();
             all.retain(|settings| !is_skipped(settings));
             assert_eq!(own, all, "{}", scene.name);
         }
@@ -63,20 +63,20 @@ fn every_curve_has_the_default_but_those_of_other_integrators() {
         let (scenario, trials) = tried(scene);
         for curve in trials.chunk_by(|a, b| a.curve == b.curve) {
             let Trial {
-                knob,
+                choice,
                 curve: label,
                 best,
                 ..
             } = &curve[0];
             let defaults = curve.iter().filter(|trial| trial.is_default).count();
-            let expected = match knob.as_str() {
+            let expected = match choice.as_str() {
                 "integrator" => 0,
                 "preset" if scenario.scene.needs().rvo => 2, // `fast` is the default with RVO
                 _ => 1,
             };
             assert_eq!(defaults, expected, "{} {label}", scene.name);
-            let has_best = !["time-step", "integrator", "preset"].contains(&knob.as_str());
-            assert_eq!(best.is_some(), has_best, "{knob}");
+            let has_best = !["time-step", "integrator", "preset"].contains(&choice.as_str());
+            assert_eq!(best.is_some(), has_best, "{choice}");
         }
     }
 }
@@ -162,7 +162,7 @@ fn statistics_are_means_over_seeds_compared_with_the_first_point() {
     let out = folder.path().join("out");
     let out = program::text(&out);
     let run = program::run(&[
-        "accuracy", "wave", "--knob", "lists", "--quick", "--json", "--out", out,
+        "accuracy", "wave", "--choice", "lists", "--quick", "--json", "--out", out,
     ]);
     let report = program::json(&run);
     let scene = &report["scenes"][0];
@@ -196,7 +196,7 @@ fn the_command_writes_tables_and_pictures_and_keeps_finished_cases() {
         let out = ["--out", program::text(&out)];
         program::run(&[&["accuracy"], arguments, &out].concat())
     };
-    let arguments = ["wall", "--knob", "precision", "--quick", "--json"];
+    let arguments = ["wall", "--choice", "precision", "--quick", "--json"];
     let first = run(&arguments);
     assert_eq!(first.status.code(), Some(0));
     let report = program::json(&first);
@@ -226,7 +226,7 @@ fn the_command_writes_tables_and_pictures_and_keeps_finished_cases() {
     let again = program::stderr(&run(&arguments));
     assert!(again.contains("0 case(s) to run, 1 kept"), "{again}");
 
-    let unknown = run(&["wall", "--knob", "taste"]);
+    let unknown = run(&["wall", "--choice", "taste"]);
     assert_eq!(unknown.status.code(), Some(2));
     assert!(program::stderr(&unknown).contains("time-step"));
 }

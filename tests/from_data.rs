@@ -91,8 +91,8 @@ fn places_and_velocities_of_people_on_straight_lines_are_exact_at_any_rate() {
             // By id.
             assert!(is_at(&scene.agents[0], &WALKERS[1], at), "{fps} {at}");
             assert!(is_at(&scene.agents[1], &WALKERS[0], at), "{fps} {at}");
-            let [late] = &scene.latecomers[..] else {
-                panic!("{:?}", scene.latecomers)
+            let [late] = &scene.scheduled[..] else {
+                panic!("{:?}", scene.scheduled)
             };
             let appears = 240.0 / fps;
             assert!((late.at - (appears - at)).abs() < 1e-9);
@@ -110,7 +110,7 @@ fn the_scene_begins_with_the_first_frame_and_ends_its_entries_at_the_given_time(
         own.extend(more.as_object().unwrap().clone());
         let (_folder, path) = folder(&text, from, json!({}));
         let scene = loaded(&path).scene;
-        [scene.agents.len(), scene.latecomers.len()]
+        [scene.agents.len(), scene.scheduled.len()]
     };
     assert_eq!(from(json!({})), [3, 1]);
     assert_eq!(from(json!({"until_secs": 9.6})), [3, 1]);
@@ -132,7 +132,7 @@ fn a_time_before_the_data_is_that_of_their_first_frame_and_a_note_says_so() {
     for (at, is_noted) in [(-7.0, true), (0.0, true), (1.9, true), (2.0, false)] {
         let scenario = load(json!(at));
         assert_eq!(scenario.scene.agents, first.scene.agents, "{at}");
-        assert_eq!(scenario.scene.latecomers, first.scene.latecomers, "{at}");
+        assert_eq!(scenario.scene.scheduled, first.scene.scheduled, "{at}");
         let note = format!(
             "from.at_secs: {at} s is before the data: the scenario begins with their first frame, at 2 s"
         );
@@ -226,7 +226,7 @@ fn the_document_has_the_people_in_place_of_the_file() {
     drop(folder);
     let again = Scenario::parse(&scenario.to_text(), "f", &[]).unwrap();
     assert_eq!(again.scene.agents, scenario.scene.agents);
-    assert_eq!(again.scene.latecomers, scenario.scene.latecomers);
+    assert_eq!(again.scene.scheduled, scenario.scene.scheduled);
     assert_eq!(again.document, scenario.document);
     assert_eq!(again.document["from"]["at_secs"], Value::Null);
     assert!(again.files.is_empty());

@@ -59,7 +59,7 @@ fn a_run_restarts_from_its_trajectories_where_everyone_was() {
             assert!(off < 1.0, "{name}: {off}");
         }
         // Two per second come in later.
-        assert_eq!(again.scene.latecomers.len(), 7, "{name}");
+        assert_eq!(again.scene.scheduled.len(), 7, "{name}");
         let mut simulation = Simulation::new(again.scene).unwrap();
         go_to(&mut simulation, 200);
         let entered = simulation.frame().agents.entered() as usize;

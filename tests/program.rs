@@ -4,7 +4,6 @@ mod common;
 
 mod accuracy;
 mod backlogs;
-mod bad_days;
 mod bench;
 mod byte_order_marks;
 mod calibrate;
@@ -24,6 +23,7 @@ mod estimate_program;
 mod estimate_table1;
 mod findings;
 mod from_runs;
+mod hard_cases;
 mod headlines;
 mod interrupts;
 mod killed;

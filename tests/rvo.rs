@@ -12,8 +12,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::forces::rvo::{
-    Candidate, Candidates, Discs, Eight, Limits, MovingDisc, Rvo, Scratch, Search, Situation,
-    Surroundings, Wish,
+    Candidate, Candidates, Discs, Eight, Limits, MovingDisc, Preference, Rvo, Scratch, Search,
+    Situation, Surroundings,
 };
 use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::math::Vector;
@@ -354,7 +354,7 @@ fn a_choice_exists_only_while_its_weight_is_positive() {
             let i = view.agents.index_of(id).unwrap();
             let (now, last) = (view.agents.avoidance[i], before[id as usize]);
             assert_eq!(now.is_some(), view.fields.density[i] < 4.0);
-            let wish = Wish {
+            let wish = Preference {
                 preferred_velocity: view.fields.preferred_velocity[i],
                 max_speed: 1.8,
             };

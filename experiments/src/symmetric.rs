@@ -152,7 +152,7 @@ fn halved(neighbors: &Neighbors, count: usize) -> Vec<(Range<usize>, Vec<Run>)> 
 }
 
 /// Eq. 9 without walls for eight agents i, and for the agents j behind them.
-struct Both<'a, S: Simd> {
+struct DensityOfPairs<'a, S: Simd> {
     mass: &'a [f32],
     /// m_i; 0 in lanes without agent.
     own_mass: Lanes<f32, S>,
@@ -164,7 +164,7 @@ struct Both<'a, S: Simd> {
     end: usize,
 }
 
-impl<'a, S: Simd> PairSum<f32, S> for Both<'a, S> {
+impl<'a, S: Simd> PairSum<f32, S> for DensityOfPairs<'a, S> {
     type Run = (&'a [f32], usize);
 
     #[inline(always)]
@@ -210,7 +210,7 @@ fn sums<S: Simd>(
         let squared = per_h * per_h;
         let mut own = [0.0; 8];
         own[..agents.len()].copy_from_slice(&bodies.mass[agents.clone()]);
-        let mut sum = Both {
+        let mut sum = DensityOfPairs {
             mass: &bodies.mass,
             own_mass: load(simd, &own, 0),
             scale: squared * splat::<f32, S>(simd, -bodies.unit * bodies.unit),

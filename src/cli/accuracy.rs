@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use super::failure::Failure;
 use super::update::CaseOptions;
 use super::watch::Watch;
-use lab::accuracy::{CHOICES, Plan, SCENES, Scene, accuracy, file_names, knobs};
+use lab::accuracy::{CHOICES, Plan, SCENES, Scene, accuracy, choices, file_names};
 
 #[derive(Args)]
 pub struct AccuracyOptions {
@@ -14,8 +14,8 @@ pub struct AccuracyOptions {
     #[arg(value_parser = PossibleValuesParser::new(scenes()))]
     pub scene: Vec<String>,
     /// Numerical choice to vary; may be repeated [default: all that matter in the scene]
-    #[arg(long, value_name = "KNOB", value_parser = PossibleValuesParser::new(knobs()))]
-    pub knob: Vec<String>,
+    #[arg(long, alias = "knob", value_name = "CHOICE", value_parser = PossibleValuesParser::new(choices()))]
+    pub choice: Vec<String>,
     /// Few values, seeds and repeats; takes less than a minute
     #[arg(long)]
     pub quick: bool,
@@ -42,7 +42,7 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     let chosen = SCENES.iter().filter(|one| wanted(one.name) && in_time(one));
     let plan = Plan {
         scenes: chosen.copied().collect(),
-        knobs: options.knob.clone(),
+        choices: options.choice.clone(),
         quick: options.quick,
     };
     // The table of choices is of all scenes.

@@ -112,7 +112,7 @@ pub enum Command {
     Bench(bench::BenchOptions),
     /// Measure run time against error for each numerical choice: tables and work-precision diagrams
     #[command(
-        after_help = format!("{}Example: sandbox accuracy relaxed wall --knob integrator", accuracy::about()),
+        after_help = format!("{}Example: sandbox accuracy relaxed wall --choice integrator", accuracy::about()),
         mut_arg("out", |out| out.required(false).default_value("accuracy"))
     )]
     Accuracy(accuracy::AccuracyOptions),

@@ -157,7 +157,7 @@ fn sums<R: Real, S: Simd>(simd: S, bodies: &Bodies<R>, block: &ClusterBlock, out
 }
 
 /// The input for the densities of a block.
-struct Given<'a> {
+struct BlockInput<'a> {
     /// Seconds since the moving average was last stored.
     time_step: f64,
     /// Whether the moving average is still unset.
@@ -169,7 +169,7 @@ struct Given<'a> {
 
 /// The densities of a block. Before they are complete, `density` is that from agents alone, and `from_walls` Σ_k ∫ W
 /// over P_k.
-struct Found<'a> {
+struct BlockDensities<'a> {
     density: &'a mut [f64],
     from_walls: &'a mut [f64],
     mean: &'a mut [f64],
@@ -181,8 +181,8 @@ struct Found<'a> {
 #[inline(always)]
 fn complete<R: Real>(
     parameters: impl Fn(usize) -> SphParameters,
-    given: &Given,
-    found: Found,
+    given: &BlockInput,
+    found: BlockDensities,
     (volume, packed): (&mut [R], &mut [R]),
 ) {
     let count = given.mass.len();
@@ -255,13 +255,13 @@ impl<'a, P: Fn(u16) -> &'a SphParameters + Sync> Input<'a, P> {
                 let newcomer = &self.agents.newcomer[agents.clone()];
                 let before = &self.agents.mean_density[agents.clone()];
                 let mass = &self.agents.mass[agents];
-                let given = Given {
+                let given = BlockInput {
                     time_step: self.time_step,
                     newcomer,
                     before,
                     mass,
                 };
-                let found = Found {
+                let found = BlockDensities {
                     density,
                     from_walls,
                     mean,

@@ -1,4 +1,4 @@
-//! Entrances: lines through which agents come in, at random or regular times and where there is room. Latecomers:
+//! Entrances: lines through which agents come in, at random or regular times and where there is room. Scheduled agents:
 //! agents that each have a time and a place of their own.
 
 use rand::Rng;
@@ -29,7 +29,7 @@ pub struct Entrance {
 
 /// An agent that comes in at a place of its own, such as the first one at which a person was recorded.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Latecomer {
+pub struct ScheduledAgent {
     /// When it arrives, seconds. It enters at once if there is room between the other bodies, and otherwise waits for
     /// room.
     pub at: f64,
@@ -37,7 +37,7 @@ pub struct Latecomer {
     pub agent: NewAgent,
 }
 
-impl Latecomer {
+impl ScheduledAgent {
     /// Whether a body of `radius` meters at its place overlaps none of the discs `others` (center and radius).
     pub fn has_room(&self, radius: f64, mut others: impl Iterator<Item = (Vector, f64)>) -> bool {
         let place = self.agent.position;

@@ -9,7 +9,7 @@ use crate::agents::{Agents, NewAgent};
 use crate::boundary::WallMethod;
 use crate::clock::Clock;
 pub use crate::clock::Integrator;
-use crate::entrance::{Entrance, Latecomer};
+use crate::entrance::{Entrance, ScheduledAgent};
 use crate::forces::own::Force;
 use crate::forces::social::SocialForce;
 use crate::forces::walking::WalkingLaw;
@@ -181,7 +181,7 @@ pub struct Scene {
     /// Lines through which agents come in later.
     pub entrances: Vec<Entrance>,
     /// Agents that come in later at places of their own, in the order of their times.
-    pub latecomers: Vec<Latecomer>,
+    pub scheduled: Vec<ScheduledAgent>,
     /// Temporary changes of behavior.
     pub pushes: Vec<Push>,
     /// Places, journeys and zones.
@@ -215,7 +215,7 @@ impl Default for Scene {
             agents: Vec::new(),
             sources: Vec::new(),
             entrances: Vec::new(),
-            latecomers: Vec::new(),
+            scheduled: Vec::new(),
             pushes: Vec::new(),
             journeys: Journeys::default(),
             routes: None,

@@ -201,7 +201,7 @@ fn lightest(scene: &Scene) -> f64 {
     });
     let sources = scene.sources.iter().map(|source| source.group);
     let entrances = scene.entrances.iter().map(|entrance| entrance.group);
-    let late = scene.latecomers.iter().map(|late| late.agent.group);
+    let late = scene.scheduled.iter().map(|late| late.agent.group);
     let entering = sources.chain(entrances).chain(late).map(of_group);
     given.chain(entering).reduce(f64::min).unwrap_or(drawn)
 }

@@ -236,7 +236,7 @@ pub fn goals(scene: &Scene, agents: &Agents) -> Vec<GoalOf> {
     });
     let doors = scene.entrances.iter();
     let through = doors.map(|entrance| (entrance.goal, entrance.group));
-    let arrivals = scene.latecomers.iter();
+    let arrivals = scene.scheduled.iter();
     let late = arrivals.map(|late| (late.agent.goal, late.agent.group));
     let entering = by_sources.chain(through).chain(late);
     let millimeters = |x: f64| (x * 1000.0).round() as i64;

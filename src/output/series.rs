@@ -72,7 +72,7 @@ pub fn counts(simulation: &Simulation) -> Vec<f64> {
     values.map(f64::from).collect()
 }
 
-/// The names of the entrances, and of the group of latecomers, where agents may wait for room.
+/// The names of the entrances, and of the group of scheduled agents, where agents may wait for room.
 pub fn waiting(scene: &Scene) -> impl Iterator<Item = String> {
     let doors = scene.entrances.iter().map(|one| one.name.as_str());
     let names = doors.chain(scene.latecomers_name());

@@ -212,7 +212,7 @@ fn expected_secs(scenario: &Scenario) -> f64 {
     });
     let doors = scene.entrances.iter();
     let through = doors.map(|entrance| entrance.arrivals.about(scenario.duration_secs));
-    let late = scene.latecomers.len() as f64;
+    let late = scene.scheduled.len() as f64;
     let entering = by_sources.chain(through).chain([late]);
     // Agents that enter during the run are present for half of it on average.
     let agents = scene.agents.len() as f64 + 0.5 * entering.sum::<f64>();

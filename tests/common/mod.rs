@@ -5,7 +5,6 @@ pub mod bounded;
 pub mod busy;
 pub mod documents;
 pub mod drawn;
-pub mod errands;
 pub mod exits;
 pub mod floors;
 pub mod html;
@@ -24,6 +23,7 @@ pub mod plans;
 #[cfg(feature = "program")]
 pub mod program;
 pub mod quadrature;
+pub mod random_journeys;
 pub mod reading;
 pub mod reading_checkpoints;
 #[cfg(feature = "program")]

@@ -125,12 +125,12 @@ pub fn recordings(
 const COARSE: f64 = 0.001;
 
 /// Which frames are recorded.
-struct Due {
+struct RecordedFrames {
     every: u64,
     from: u64,
 }
 
-impl Due {
+impl RecordedFrames {
     fn new(record: &RecordOptions, simulation: &Simulation) -> Self {
         Self {
             every: record.record_every,
@@ -169,7 +169,7 @@ impl Observer<Failure> for Trajectory {
 /// The recording of a run.
 pub struct Recording {
     recorder: Recorder,
-    due: Due,
+    due: RecordedFrames,
     /// Number of frames recorded so far.
     recorded: u64,
     /// The clock at the last frame, and whether it was said why the run ended there.
@@ -187,7 +187,7 @@ impl Recording {
         let view = recording_options(&run.scenario, debug, record.record_from);
         Ok(Self {
             recorder: Recorder::create(to, &run.simulation, &view)?,
-            due: Due::new(record, &run.simulation),
+            due: RecordedFrames::new(record, &run.simulation),
             recorded: 0,
             last: *run.simulation.frame().clock,
             ended: false,

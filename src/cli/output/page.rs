@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use super::{Due, kinds, recording_options};
+use super::{RecordedFrames, kinds, recording_options};
 use crate::cli::arguments::RecordOptions;
 use crate::cli::failure::Failure;
 use crate::cli::results as report;
@@ -21,7 +21,7 @@ use scenario::Scenario;
 /// The page of a run while it is being written.
 pub struct PageOfRun {
     page: Page,
-    due: Due,
+    due: RecordedFrames,
     debug: DebugAgents,
     events: Events,
     /// The Rerun viewer, and the recording that it shows, which is complete before the page is.
@@ -51,7 +51,7 @@ impl PageOfRun {
         };
         Ok(Self {
             page: create(path, (&run.scenario, &run.simulation), &options)?,
-            due: Due::new(record, &run.simulation),
+            due: RecordedFrames::new(record, &run.simulation),
             debug,
             events: Events::new(run.scenario.entering),
             viewer,

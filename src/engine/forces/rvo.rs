@@ -72,7 +72,7 @@ pub struct Situation {
 
 /// The velocity that an agent wants, and the limits on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wish {
+pub struct Preference {
     /// v_i^pref, m/s.
     pub preferred_velocity: Vector,
     /// s_max, m/s.
@@ -93,7 +93,7 @@ impl Rvo {
         &self,
         frame: &Frame,
         i: usize,
-        wish: Wish,
+        wish: Preference,
         scratch: &mut Scratch,
     ) -> Vector {
         let Scratch {
@@ -125,7 +125,7 @@ pub struct Scratch {
 
 impl Situation {
     /// Sets this to the state of agent `i` of a frozen frame, and the walls within `radius` meters.
-    pub fn see(&mut self, frame: &Frame, i: usize, radius: f64, wish: Wish) {
+    pub fn see(&mut self, frame: &Frame, i: usize, radius: f64, wish: Preference) {
         let agents = frame.agents;
         self.position = agents.position[i];
         self.velocity = agents.velocity[i];

@@ -1,4 +1,4 @@
-//! Agents that come in through entrances, and latecomers. They enter on coarse frames, where there is room.
+//! Agents that come in through entrances, and scheduled agents. They enter on coarse frames, where there is room.
 
 use rand::Rng;
 use rand::distr::Open01;
@@ -70,12 +70,12 @@ impl Gate {
     }
 }
 
-/// Progress of the latecomers.
+/// Progress of the scheduled agents.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Late {
     /// Number of agents that have arrived.
     arrived: u32,
-    /// The numbers of the latecomers that wait for room, ascending.
+    /// The numbers of the scheduled agents that wait for room, ascending.
     waiting: Vec<u32>,
     /// The largest number of agents that waited, and the first frame in which they did.
     largest: (u32, u64),
@@ -85,17 +85,17 @@ impl Late {
     /// Whether this progress fits `scene`.
     pub(super) fn fits(&self, scene: &Scene) -> bool {
         let is_known = |&number: &u32| number < self.arrived;
-        self.arrived as usize <= scene.latecomers.len()
+        self.arrived as usize <= scene.scheduled.len()
             && self.waiting.iter().all(is_known)
             && self.waiting.is_sorted_by(|a, b| a < b)
     }
 
     /// Whether more agents will enter.
     pub(super) fn expects_agents(&self, scene: &Scene) -> bool {
-        !self.waiting.is_empty() || (self.arrived as usize) < scene.latecomers.len()
+        !self.waiting.is_empty() || (self.arrived as usize) < scene.scheduled.len()
     }
 
-    /// The waiting latecomers, under the name of their first group; `None` if the scene has none.
+    /// The waiting scheduled agents, under the name of their first group; `None` if the scene has none.
     pub(super) fn backlog<'a>(&self, scene: &'a Scene) -> Option<Backlog<'a>> {
         Some(Backlog {
             name: scene.latecomers_name()?,
@@ -119,27 +119,27 @@ impl Scene {
         }
     }
 
-    /// The name of the latecomers in reports, which is that of their first group; `None` if there are none.
+    /// The name of the scheduled agents in reports, which is that of their first group; `None` if there are none.
     pub fn latecomers_name(&self) -> Option<&str> {
-        let first = self.latecomers.first()?;
+        let first = self.scheduled.first()?;
         let group = self.groups.get(usize::from(first.agent.group))?;
         Some(&group.name)
     }
 }
 
 impl Crowd {
-    /// Lets in all latecomers that have arrived and have room. They do not queue for each other.
+    /// Lets in all scheduled agents that have arrived and have room. They do not queue for each other.
     pub(super) fn follow_latecomers(&mut self, scene: &Scene) -> Result<(), Fault> {
         let frame = self.clock.frame();
         let mut late = std::mem::take(&mut self.schedule.late);
-        while let Some(next) = scene.latecomers.get(late.arrived as usize)
+        while let Some(next) = scene.scheduled.get(late.arrived as usize)
             && self.clock.coarse_frame_at(next.at) <= frame
         {
             late.waiting.push(late.arrived);
             late.arrived += 1;
         }
         for number in std::mem::take(&mut late.waiting) {
-            let next = &scene.latecomers[number as usize];
+            let next = &scene.scheduled[number as usize];
             let id = self.agents.entered();
             let traits = &scene.groups[usize::from(next.agent.group)].traits;
             let radius = next.agent.radius;

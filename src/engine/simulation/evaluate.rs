@@ -8,8 +8,8 @@ use super::{Fixed, Simulation, Stage};
 use crate::density;
 use crate::forces::goal;
 use crate::forces::near::{self, PairCoefficients};
-use crate::forces::rvo::{Scratch, Wish};
-use crate::forces::walking::{Decided, Due, WalkingLaw, some_meet};
+use crate::forces::rvo::{Preference, Scratch};
+use crate::forces::walking::{Decided, Deciders, WalkingLaw, some_meet};
 use crate::frame::Frame;
 use crate::math::{Vector, are_finite, clamp_length, direction};
 use crate::neighbors::{BLOCK, ListPolicy, TASK};
@@ -196,7 +196,7 @@ impl Simulation {
             let blocks = blocks.with_min_len(TASK).enumerate();
             blocks.for_each(|(b, (allowed, heading))| {
                 for law in &fixed.walking_laws {
-                    let due = Due {
+                    let due = Deciders {
                         meets,
                         ..fixed.due(&frame, b, law, allowed)
                     };
@@ -276,7 +276,7 @@ impl Fixed {
     }
 
     /// The agents of block `b` with this walking law that have no allowed speed yet.
-    fn due(&self, frame: &Frame, b: usize, law: &WalkingLaw, allowed: &[Option<f64>]) -> Due {
+    fn due(&self, frame: &Frame, b: usize, law: &WalkingLaw, allowed: &[Option<f64>]) -> Deciders {
         let (mut is_due, mut gap) = ([false; BLOCK], [1.0; BLOCK]);
         for (k, allowed) in allowed.iter().enumerate() {
             let i = b * BLOCK + k;
@@ -288,7 +288,7 @@ impl Fixed {
                 gap[k] = self.gap(frame, i, law);
             }
         }
-        Due {
+        Deciders {
             is_due,
             gap,
             meets: true,
@@ -296,10 +296,10 @@ impl Fixed {
     }
 
     /// The input of RVO for agent `i`.
-    fn wish(&self, frame: &Frame, i: usize) -> Wish {
+    fn wish(&self, frame: &Frame, i: usize) -> Preference {
         let free = frame.fields.preferred_velocity[i];
         let law = self.blend(frame.agents, i).law_of_rvo();
-        Wish {
+        Preference {
             preferred_velocity: match law {
                 Some(law) => free + law.lost_velocity(frame, i),
                 None => free,

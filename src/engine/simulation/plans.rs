@@ -45,7 +45,7 @@ pub struct RouteDecision {
 }
 
 /// An agent that compares its routes.
-struct Due {
+struct Comparing {
     agent: usize,
     /// Whether it has no plan yet.
     is_new: bool,
@@ -95,7 +95,8 @@ impl Crowd {
         if is_due(&self.clock) {
             self.look_ahead(scene);
         }
-        let (new, others): (Vec<Due>, Vec<Due>) = due.into_iter().partition(|due| due.is_new);
+        let (new, others): (Vec<Comparing>, Vec<Comparing>) =
+            due.into_iter().partition(|due| due.is_new);
         for due in &others {
             self.plan(scene, due, false);
         }
@@ -128,7 +129,7 @@ impl Crowd {
     /// The agents that enter a room, have a new goal or compare their routes again, in a fixed order. Of the others,
     /// those that may have left their room note where they are, and those that are due but have no choice draw a new
     /// time.
-    fn due(&mut self, scene: &Scene, routes: &Routes, rooms: &Rooms) -> Vec<Due> {
+    fn due(&mut self, scene: &Scene, routes: &Routes, rooms: &Rooms) -> Vec<Comparing> {
         let mut plans = std::mem::take(&mut self.agents.plan);
         plans.resize(self.agents.len(), None);
         let (crowd, agents, frame) = (&*self, &self.agents, self.clock.frame());
@@ -168,7 +169,7 @@ impl Crowd {
                 }
                 return None;
             }
-            Some(Due {
+            Some(Comparing {
                 agent,
                 is_new: before.is_none(),
                 from,
@@ -176,7 +177,7 @@ impl Crowd {
                 routes: routes.routes_out((p, here), goal, None, None)?,
             })
         });
-        let mut due: Vec<Due> = due.collect();
+        let mut due: Vec<Comparing> = due.collect();
         // Neighbors have similar ids: in another order, no side of a room decides first.
         due.sort_unstable_by_key(|due| agents.id[due.agent].wrapping_mul(ORDER));
         self.agents.plan = plans;
@@ -193,7 +194,7 @@ impl Crowd {
     }
 
     /// An agent that is due compares its routes; `afresh`: whatever it has planned.
-    fn plan(&mut self, scene: &Scene, due: &Due, afresh: bool) {
+    fn plan(&mut self, scene: &Scene, due: &Comparing, afresh: bool) {
         let (Some(routes), Some(rooms)) = (&scene.routes, scene.rooms()) else {
             return;
         };
@@ -245,7 +246,7 @@ impl Crowd {
     fn count_change(
         &mut self,
         rooms: &Rooms,
-        due: &Due,
+        due: &Comparing,
         [left, toward]: [Option<Side>; 2],
         has_passed: bool,
     ) {

@@ -1,4 +1,4 @@
-//! Sources, entrances, latecomers and pushes: scheduled changes of the crowd, on coarse frames only.
+//! Sources, entrances, scheduled agents and pushes: scheduled changes of the crowd, on coarse frames only.
 
 use serde::{Deserialize, Serialize};
 
@@ -40,14 +40,14 @@ pub enum EventKind {
     Released,
 }
 
-/// Progress of the sources, entrances, latecomers and pushes of a scene.
+/// Progress of the sources, entrances, scheduled agents and pushes of a scene.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Schedule {
     /// Number of entries so far, per source.
     entries: Vec<u32>,
     /// Progress at each entrance.
     pub(super) gates: Vec<Gate>,
-    /// Progress of the latecomers.
+    /// Progress of the scheduled agents.
     pub(super) late: Late,
     /// Active pushes: index of the push and frame of its end.
     pushing: Vec<(u16, u64)>,
@@ -115,7 +115,7 @@ impl Simulation {
     pub(super) fn follow_schedule(&mut self) -> Result<(), Fault> {
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
         let nothing = scene.sources.is_empty() && scene.pushes.is_empty();
-        let nothing = nothing && scene.entrances.is_empty() && scene.latecomers.is_empty();
+        let nothing = nothing && scene.entrances.is_empty() && scene.scheduled.is_empty();
         if nothing || !crowd.decides() {
             return Ok(());
         }

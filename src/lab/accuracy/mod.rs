@@ -7,22 +7,22 @@
 //! of the means of measurements over seeds from those of a run with a fine step.
 
 mod cost;
-mod found;
 mod front;
 mod lyapunov;
 mod pictures;
 mod report;
+mod results;
 mod scenes;
 mod statistics;
 mod suite;
 mod trajectory;
 mod trials;
 
-pub use found::{Found, Measured, Point, Quantity};
 pub use front::{better, cheapest};
 pub use lyapunov::Lyapunov;
 pub use report::{CHOICES, Report, file_names};
+pub use results::{Measured, Point, Quantity, SceneResults};
 pub use scenes::{Kind, SCENES, Scene};
 pub use suite::{Plan, accuracy};
 pub use trajectory::{Errors, Motion, SAMPLES, Trajectories, limit};
-pub use trials::{Trial, few, knobs, trials};
+pub use trials::{Trial, choices, few, trials};

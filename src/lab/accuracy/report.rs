@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::found::{self, Found};
 use super::pictures;
+use super::results::{self, SceneResults};
 use super::scenes::names;
 use crate::error::LabError;
 use output::document::{Block, Document, Findings, Names};
@@ -32,7 +32,7 @@ fn figure(scene: &str) -> String {
 #[derive(Clone)]
 pub struct Report {
     /// The results, scene by scene.
-    pub scenes: Vec<Found>,
+    pub scenes: Vec<SceneResults>,
     /// Whether the plan was quick, with few values, seeds and turns.
     pub quick: bool,
 }
@@ -43,11 +43,11 @@ impl Report {
     /// # Errors
     /// A table cannot be written.
     pub fn findings(&self) -> Result<Findings, LabError> {
-        let choices: Vec<_> = self.scenes.iter().flat_map(Found::choices).collect();
+        let choices: Vec<_> = self.scenes.iter().flat_map(SceneResults::choices).collect();
         let part = |name: &str, heading: String| Block::Part(name.to_owned(), heading);
         let mut blocks = vec![
             part(CHOICES, "The cheapest settings for each error".to_owned()),
-            Block::table(found::table(&choices)),
+            Block::table(results::table(&choices)),
         ];
         for found in &self.scenes {
             let (name, about) = (found.scene.name, found.scene.about());
@@ -73,7 +73,7 @@ impl Report {
         }
         Table::of(&rows)
             .column("scene", |(found, ..)| found.scene.name)
-            .column("knob", |(_, point, ..)| point.trial.knob.as_str())
+            .column("choice", |(_, point, ..)| point.trial.choice.as_str())
             .column("curve", |(_, point, ..)| point.trial.curve.as_str())
             .column("settings", |(_, point, ..)| names(&point.trial.settings))
             .column("default", |(_, point, ..)| point.trial.is_default)

@@ -1,6 +1,6 @@
 //! The errors of measurements, averaged over seeds: Table 1's numbers, speed by density, and the speed of a wave.
 
-use super::found::{Judged, Measured, Quantity};
+use super::results::{Judged, Measured, Quantity};
 use analysis::statistics::MeanStd;
 use runs::summary::Summary;
 

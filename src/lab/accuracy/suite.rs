@@ -1,11 +1,11 @@
-//! The whole measurement: every scene under every knob. Errors are stored; costs are measured anew.
+//! The whole measurement: every scene under every choice. Errors are stored; costs are measured anew.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use super::found::{Found, Judged, Point};
 use super::report::Report;
+use super::results::{Judged, Point, SceneResults};
 use super::scenes::{Kind, Scene, names};
 use super::trajectory::Trajectories;
 use super::trials::{Trial, few, reference, settings, trials};
@@ -26,8 +26,8 @@ use scenario::Setting;
 pub struct Plan {
     /// The scenes.
     pub scenes: Vec<Scene>,
-    /// The knobs whose values are tried; empty for all.
-    pub knobs: Vec<String>,
+    /// The choices whose values are tried; empty for all.
+    pub choices: Vec<String>,
     /// A check that everything works: few values, two seeds, and costs from a single turn.
     pub quick: bool,
 }
@@ -62,7 +62,7 @@ pub fn accuracy(plan: &Plan, store: &Store, listener: &dyn Listener) -> Result<R
     let jobs: Vec<Job> = of_tasks.into_iter().flatten().collect();
     let results = results(&jobs, store, listener)?;
     let finished = tasks.iter().map(|task| task.finish(results, listener));
-    let found = finished.collect::<Result<Vec<Found>, _>>()?;
+    let found = finished.collect::<Result<Vec<SceneResults>, _>>()?;
     Ok(Report {
         scenes: found,
         quick: plan.quick,
@@ -75,7 +75,7 @@ impl Task {
         let study = scene.study(few_seeds.then_some(FEW_SEEDS))?;
         let document = scene.document(&study)?;
         let mut trials = trials(&study, &document)?;
-        trials.retain(|trial| plan.knobs.is_empty() || plan.knobs.contains(&trial.knob));
+        trials.retain(|trial| plan.choices.is_empty() || plan.choices.contains(&trial.choice));
         if plan.quick {
             trials = few(&trials);
         }
@@ -129,7 +129,7 @@ impl Task {
     }
 
     /// Combines the results of the jobs, and measures the costs.
-    fn finish(&self, results: Results, listener: &dyn Listener) -> Result<Found, LabError> {
+    fn finish(&self, results: Results, listener: &dyn Listener) -> Result<SceneResults, LabError> {
         let judged = match self.scene.kind {
             Kind::Motion => {
                 let (name, key) = self.motion();
@@ -156,7 +156,7 @@ impl Task {
             cost: costs[&trial.entry],
             errors,
         });
-        Ok(Found {
+        Ok(SceneResults {
             scene: self.scene,
             quantities: judged.quantities,
             points: points.collect(),

@@ -6,8 +6,8 @@ use std::rc::Rc;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::found::{Judged, Measured, Quantity};
 use super::lyapunov::Lyapunov;
+use super::results::{Judged, Measured, Quantity};
 use super::scenes::{names, scenario, setting, simulation};
 use super::trials::Trial;
 use crate::error::LabError;
@@ -117,7 +117,7 @@ pub fn limit(walls: WallMethod, quick: bool, coarser: f64) -> Result<Vec<Setting
 /// The errors of all trials of a scene that is judged by motion, in their order.
 #[derive(Serialize, Deserialize)]
 pub struct Trajectories {
-    /// Errors against the limit, and against the knob's best settings.
+    /// Errors against the limit, and against the choice's best settings.
     pub trials: Vec<(Errors, Option<Errors>)>,
     /// The approximate error of the limit itself.
     pub limit: Errors,
@@ -136,8 +136,8 @@ impl Trajectories {
         let mut errors = Vec::new();
         for trial in trials {
             let motion = motions.get(&trial.settings)?;
-            // For a preset, the limit has the preset's own walls; for all other knobs, those of the paper.
-            let walls = match trial.knob.as_str() {
+            // For a preset, the limit has the preset's own walls; for all other choices, those of the paper.
+            let walls = match trial.choice.as_str() {
                 "preset" => scenario(document, &trial.settings)?.scene.wall_method,
                 _ => WallMethod::default(),
             };
@@ -162,7 +162,7 @@ impl Trajectories {
             quantities.extend(names.map(|name| Quantity { name, unit }));
         }
         let middle = SAMPLES[1];
-        let (name, unit) = (format!("position at {middle} s by this knob alone"), "m");
+        let (name, unit) = (format!("position at {middle} s by this choice alone"), "m");
         quantities.push(Quantity { name, unit });
         let errors = self.trials.iter().map(|(total, own)| {
             let all = [total.position, total.velocity, total.density].concat();

@@ -1,8 +1,8 @@
-//! The trials in a scene: values of the numerical choices ("knobs") that act in it.
+//! The trials in a scene: values of the numerical choices ("choices") that act in it.
 //!
 //! Every entry of the scene's study is a trial, except the first one, which has no settings, and `reference`, with
-//! which statistics are compared. A trial's label is `KNOB` or `KNOB: CURVE`; pictures join the points of a curve by a
-//! line. ` (best)` marks the value at which the knob adds no error.
+//! which statistics are compared. A trial's label is `CHOICE` or `CHOICE: CURVE`; pictures join the points of a curve by a
+//! line. ` (best)` marks the value at which the choice adds no error.
 
 use serde::{Serialize, Serializer};
 use serde_json::Value;
@@ -17,14 +17,14 @@ use scenario::Setting;
 const DEFAULT: &str = "default";
 /// The label of the entry with which statistics are compared.
 const REFERENCE: &str = "reference";
-/// The end of the label of a knob's best value.
+/// The end of the label of a choice's best value.
 const BEST: &str = " (best)";
 
 /// Settings that are tried in a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Trial {
-    /// The knob.
-    pub knob: String,
+    /// The choice.
+    pub choice: String,
     /// The label of its curve.
     pub curve: String,
     /// The settings.
@@ -33,7 +33,7 @@ pub struct Trial {
     /// Whether these are the defaults.
     #[serde(rename = "default")]
     pub is_default: bool,
-    /// The knob's best settings, with all others at their defaults; `None` for a knob without a best value.
+    /// The choice's best settings, with all others at their defaults; `None` for a choice without a best value.
     #[serde(skip)]
     pub best: Option<Vec<Setting>>,
     /// The index of the study's entry with its runs; defaults share those of the first entry.
@@ -44,7 +44,7 @@ pub struct Trial {
 impl Trial {
     /// Whether both are on one curve.
     pub fn shares_curve(&self, other: &Self) -> bool {
-        (&self.knob, &self.curve) == (&other.knob, &other.curve)
+        (&self.choice, &self.curve) == (&other.choice, &other.curve)
     }
 }
 
@@ -52,14 +52,14 @@ fn texts<S: Serializer>(settings: &[Setting], serializer: S) -> Result<S::Ok, S:
     serializer.collect_seq(settings.iter().map(Setting::to_string))
 }
 
-/// The names of all knobs.
-pub fn knobs() -> Vec<&'static str> {
+/// The names of all choices.
+pub fn choices() -> Vec<&'static str> {
     let labels = SCENES.iter().flat_map(|scene| scene.labels());
-    let knobs = labels.map(|label| knob_and_curve(label).0);
-    distinct(knobs.filter(|knob| ![DEFAULT, REFERENCE].contains(knob)))
+    let choices = labels.map(|label| choice_and_curve(label).0);
+    distinct(choices.filter(|choice| ![DEFAULT, REFERENCE].contains(choice)))
 }
 
-fn knob_and_curve(label: &str) -> (&str, &str) {
+fn choice_and_curve(label: &str) -> (&str, &str) {
     let label = label.strip_suffix(BEST).unwrap_or(label);
     label.split_once(": ").unwrap_or((label, label))
 }
@@ -77,13 +77,13 @@ pub fn trials(study: &Study, document: &Value) -> Result<Vec<Trial>, LabError> {
             continue;
         }
         let settings = settings(&cells[0])?;
-        let (knob, curve) = knob_and_curve(label);
+        let (choice, curve) = choice_and_curve(label);
         if label.ends_with(BEST) {
-            best.push((knob, settings.clone()));
+            best.push((choice, settings.clone()));
         }
         let is_default = numerics(document, &settings)? == default;
         trials.push(Trial {
-            knob: knob.to_owned(),
+            choice: choice.to_owned(),
             curve: curve.to_owned(),
             settings,
             is_default,
@@ -92,7 +92,7 @@ pub fn trials(study: &Study, document: &Value) -> Result<Vec<Trial>, LabError> {
         });
     }
     for trial in &mut trials {
-        let own = best.iter().find(|(knob, _)| *knob == trial.knob);
+        let own = best.iter().find(|(choice, _)| *choice == trial.choice);
         trial.best = own.map(|(_, settings)| settings.clone());
     }
     Ok(trials)

@@ -24,7 +24,7 @@ pub use evaluate::{Evaluated, Sample};
 pub use parameter::Parameter;
 pub use report::Report;
 pub use scene::{Scene, Set, Target};
-pub use search::{Found, Stage};
+pub use search::{Calibrated, Stage};
 pub use study::{Calibration, MOST_GENERATIONS};
 pub use text::names;
 

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 use super::evaluate::Sample;
 use super::residual::{noise, residual, root_mean_square};
 use super::scene::{Set, Target};
-use super::search::{Found, Stage, Trial};
+use super::search::{Calibrated, Stage, Trial};
 use super::study::Calibration;
 use runs::identity::ENGINE;
 
@@ -20,7 +20,7 @@ pub struct Report<'a> {
     /// The calibration.
     pub calibration: &'a Calibration,
     /// The results.
-    pub found: Found,
+    pub found: Calibrated,
 }
 
 /// A parameter.

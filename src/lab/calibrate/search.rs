@@ -70,7 +70,7 @@ pub struct Screened {
 }
 
 /// Everything that was found.
-pub struct Found {
+pub struct Calibrated {
     /// All points with the targets of the fit and the seeds of the search, in order.
     pub trials: Vec<Trial>,
     /// The screening, if there was one.
@@ -88,7 +88,7 @@ pub struct Found {
 }
 
 /// Runs all stages.
-pub fn search(evaluator: &Evaluator) -> Result<Found, LabError> {
+pub fn search(evaluator: &Evaluator) -> Result<Calibrated, LabError> {
     let mut stages = Stages {
         evaluator,
         targets: evaluator.targets(&[Set::Fit]),
@@ -112,7 +112,7 @@ pub fn search(evaluator: &Evaluator) -> Result<Found, LabError> {
     let [start, end]: [Evaluated; 2] = compared
         .try_into()
         .map_err(|_| LabError::missing("the errors", "result"))?;
-    Ok(Found {
+    Ok(Calibrated {
         trials: stages.trials,
         screened,
         searched,

@@ -95,8 +95,8 @@ pub fn measure<E: From<MeasureError>>(
     let mut safety = Safety::new(tracks, tracks.frames[chosen.start], options.sample_every);
     for batch in batches(tracks, chosen) {
         let frames = batch.clone().into_par_iter();
-        let found: Vec<Found> = frames.map(|k| rows.of_frame(k)).collect();
-        let moment = |(k, found): (usize, Found)| {
+        let found: Vec<Incomplete> = frames.map(|k| rows.of_frame(k)).collect();
+        let moment = |(k, found): (usize, Incomplete)| {
             overview.look_at(&found.parts);
             found.completed(&mut history, tracks, tracks.frames[k])
         };
@@ -139,7 +139,7 @@ struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    fn of_frame(&self, k: usize) -> Found {
+    fn of_frame(&self, k: usize) -> Incomplete {
         let Self {
             tracks, options, ..
         } = self;
@@ -150,7 +150,7 @@ impl Rows<'_> {
         let person = |(row, parts)| person(tracks, row, parts, self.velocities[row]);
         let mut people: Vec<Person> = rows.zip(&parts).map(person).collect();
         let regions = self.places.measure(&mut people);
-        Found {
+        Incomplete {
             parts,
             people,
             regions,
@@ -159,13 +159,13 @@ impl Rows<'_> {
 }
 
 /// A frame before the densities of its people are known.
-struct Found {
+struct Incomplete {
     parts: Vec<Parts>,
     people: Vec<Person>,
     regions: Vec<RegionState>,
 }
 
-impl Found {
+impl Incomplete {
     /// The frame with the number `frame`, with all densities.
     fn completed(mut self, history: &mut History, tracks: &Tracks, frame: i64) -> Moment {
         for (person, parts) in self.people.iter_mut().zip(&self.parts) {

@@ -47,7 +47,7 @@ impl WalkableArea {
             }));
             entries.extend(positions.into_iter().map(entry));
         }
-        for late in &scene.latecomers {
+        for late in &scene.scheduled {
             goals.extend([late.agent.position, late.agent.goal]);
         }
         for entrance in &scene.entrances {

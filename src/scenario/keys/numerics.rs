@@ -9,7 +9,7 @@ use engine::clock::SHORTEST_TIME_STEP;
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "must be a number of seconds, or \"auto\"")]
 pub enum TimeStep {
-    Given(#[schemars(range(min = SHORTEST_TIME_STEP, max = 1))] f64),
+    Fixed(#[schemars(range(min = SHORTEST_TIME_STEP, max = 1))] f64),
     Auto(Auto),
 }
 

@@ -9,7 +9,7 @@ use super::{About, Measure, Observed, Quantity};
 use crate::error::Problem;
 use crate::keys::limits::LONGEST_TIME;
 use crate::keys::shapes::{Corners, wide_region};
-use analysis::oscillation::{Oscillation as Found, correlation_lengths, speed};
+use analysis::oscillation::{Oscillation as Analyzed, correlation_lengths, speed};
 use engine::scene::Region;
 use engine::simulation::Simulation;
 
@@ -221,7 +221,7 @@ impl Measure for Oscillation {
 
     fn values(&self, seen: &Seen, _: &Simulation) -> Vec<Option<f64>> {
         let series = self.series(seen);
-        let Some(found) = Found::of(&series, seen.every) else {
+        let Some(found) = Analyzed::of(&series, seen.every) else {
             return vec![None; self.quantities().len()];
         };
         let spins: Vec<f64> = found.spins.iter().copied().flatten().collect();
@@ -245,7 +245,7 @@ impl Measure for Oscillation {
     }
 
     fn data(&self, seen: &Seen) -> Option<(String, Value)> {
-        let found = Found::of(&self.series(seen), seen.every);
+        let found = Analyzed::of(&self.series(seen), seen.every);
         Some((self.name().to_owned(), json!(found)))
     }
 }

@@ -5,7 +5,7 @@ use crate::keys::from::{FROM, FromData, Person};
 use crate::scene::people::Population;
 use crate::scene::target::Target;
 use engine::agents::NewAgent;
-use engine::entrance::Latecomer;
+use engine::entrance::ScheduledAgent;
 
 impl Population<'_> {
     /// Adds the people of `from`.
@@ -43,13 +43,13 @@ impl Population<'_> {
                 there.len()
             ));
         }
-        let latecomer = |person: &Person| Latecomer {
+        let scheduled = |person: &Person| ScheduledAgent {
             at: person.enters(),
             agent: agent(person),
         };
         self.scene
-            .latecomers
-            .extend(later.into_iter().map(latecomer));
+            .scheduled
+            .extend(later.into_iter().map(scheduled));
         Ok(())
     }
 

@@ -29,7 +29,7 @@ pub fn journeys(
     (walls, behind): (&Walls, &Rings),
     notes: &mut Vec<String>,
 ) -> Result<Journeys, Problem> {
-    let mut found = Found {
+    let mut found = Builder {
         walls,
         behind,
         notes,
@@ -66,7 +66,7 @@ pub fn journeys(
 }
 
 /// Places and journeys so far.
-struct Found<'a> {
+struct Builder<'a> {
     walls: &'a Walls,
     behind: &'a Rings,
     notes: &'a mut Vec<String>,
@@ -75,7 +75,7 @@ struct Found<'a> {
     numbers: BTreeMap<String, u16>,
 }
 
-impl Found<'_> {
+impl Builder<'_> {
     fn add_places(&mut self, keys: &File) -> Result<(), Problem> {
         for (k, given) in keys.exits.iter().enumerate() {
             let exit = exit(given);

@@ -202,7 +202,7 @@ pub fn last_entry(file: &File, clock: &Clock, duration_secs: f64) -> f64 {
     if let Some(TimeStep::Auto(_)) = file.time_step_secs {
         // The step depends on the agents; the last frame is at most half a step late.
         let longest = match file.longest_step_secs {
-            Some(TimeStep::Given(longest)) => longest,
+            Some(TimeStep::Fixed(longest)) => longest,
             Some(TimeStep::Auto(_)) | None => PAPER_COARSE_STEP,
         };
         return duration_secs + 0.5 * longest;

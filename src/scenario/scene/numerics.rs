@@ -64,7 +64,7 @@ pub fn automatic_step(scene: &Scene) -> Option<f64> {
 /// The clock of a file, with the paper's step if that is missing or `auto`.
 pub fn first_clock(keys: &File) -> Clock {
     let step = match keys.time_step_secs {
-        Some(TimeStep::Given(step)) => step,
+        Some(TimeStep::Fixed(step)) => step,
         Some(TimeStep::Auto(_)) | None => PAPER_TIME_STEP,
     };
     let nearest = || Clock::nearest_coarse_every(step);
@@ -81,7 +81,7 @@ pub fn clock_for(keys: &File, scene: &Scene) -> Result<Clock, Problem> {
                       give a number";
         Problem::new("time_step_secs", reason)
     })?.min(match keys.longest_step_secs {
-        Some(TimeStep::Given(longest)) => longest,
+        Some(TimeStep::Fixed(longest)) => longest,
         Some(TimeStep::Auto(_)) | None => longest_faithful_step(scene),
     });
     if step < SHORTEST_TIME_STEP {

@@ -14,7 +14,7 @@ use crate::scene::places;
 use crate::scene::reached::{Distances, Reached};
 use crate::scene::widest::{Widest, passable};
 use engine::agents::RADIUS_RANGE;
-use engine::entrance::Latecomer;
+use engine::entrance::ScheduledAgent;
 use engine::geometry::Area;
 use engine::journeys::{Kind, Place};
 use engine::math::{Vector, bounds};
@@ -323,7 +323,7 @@ fn starts(scene: &Scene) -> Vec<Start> {
             add(start, later(source.group), goal);
         }
     }
-    for Latecomer { agent, .. } in &scene.latecomers {
+    for ScheduledAgent { agent, .. } in &scene.scheduled {
         add(agent.position, later(agent.group), agent.goal);
     }
     for entrance in &scene.entrances {

@@ -101,10 +101,10 @@ fn most_speed(scene: &Scene) -> f64 {
     })
 }
 
-/// The bounding box of walls, agents, goals, sources, entrances and latecomers, with a margin.
+/// The bounding box of walls, agents, goals, sources, entrances and scheduled agents, with a margin.
 fn surroundings(scene: &Scene) -> Region {
     let corners = scene.walls.iter().map(|wall| wall.start);
-    let late = scene.latecomers.iter().map(|late| &late.agent);
+    let late = scene.scheduled.iter().map(|late| &late.agent);
     let people = scene.agents.iter().chain(late);
     let agents = people.flat_map(|agent| [agent.position, agent.goal]);
     let grids = scene.sources.iter();

@@ -65,9 +65,9 @@ impl Widest {
         }
         let sources = scene.sources.iter().map(|source| (source.group, None));
         let entrances = scene.entrances.iter().map(|one| (one.group, None));
-        let people = scene.latecomers.iter().map(|late| &late.agent);
-        let latecomers = people.map(|agent| (agent.group, agent.radius));
-        for (group, own) in sources.chain(entrances).chain(latecomers) {
+        let people = scene.scheduled.iter().map(|late| &late.agent);
+        let scheduled = people.map(|agent| (agent.group, agent.radius));
+        for (group, own) in sources.chain(entrances).chain(scheduled) {
             let member = Member { agent: None, group };
             add(member, own.unwrap_or_else(|| of_group(group)));
         }

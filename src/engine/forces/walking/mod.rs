@@ -50,7 +50,7 @@ pub enum WalkingLaw {
 const FADE: f64 = 0.5;
 
 /// The agents of a block that decide now.
-pub struct Due {
+pub struct Deciders {
     /// Whether each of them does.
     pub is_due: [bool; BLOCK],
     /// The factors of their time gaps ([`headings::Gap`]); 1 with other laws.
@@ -123,7 +123,7 @@ impl WalkingLaw {
     }
 
     /// Sets what the due agents of block `b` decide.
-    pub fn decide(&self, frame: &Frame, b: usize, due: &Due, mut decided: Decided) {
+    pub fn decide(&self, frame: &Frame, b: usize, due: &Deciders, mut decided: Decided) {
         each!(frame.packed, columns => dispatch!(Level::new(), simd => {
             self.decide_with(simd, &columns.bodies, (frame, b), due, &mut decided);
         }));
@@ -135,7 +135,7 @@ impl WalkingLaw {
         simd: S,
         bodies: &Bodies<R>,
         (frame, b): (&Frame, usize),
-        due: &Due,
+        due: &Deciders,
         decided: &mut Decided,
     ) {
         let mut runs = Vec::new();

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use super::Undone;
 use crate::bench::timing::{failed, ms_of, warmed};
 use crate::error::LabError;
-use engine::forces::rvo::{Scratch, Wish};
-use engine::forces::walking::{Decided, Due, Headway, WalkingLaw};
+use engine::forces::rvo::{Preference, Scratch};
+use engine::forces::walking::{Decided, Deciders, Headway, WalkingLaw};
 use engine::geometry::{Area, Ring};
 use engine::math::{Vector, bounds};
 use engine::neighbors::{BLOCK, Lists, Neighbors, TASK};
@@ -102,7 +102,7 @@ pub fn rvo_by_blend(simulation: &Simulation) -> Result<Work, &'static str> {
             if let Some(rvo) = blend.rvo()
                 && !blend.rvo_acts(&frame, i)
             {
-                let wish = Wish {
+                let wish = Preference {
                     preferred_velocity: frame.fields.preferred_velocity[i],
                     max_speed: simulation.scene().max_speed(frame.agents, i),
                 };
@@ -191,7 +191,7 @@ pub fn walking_law(simulation: &Simulation) -> Result<Work, &'static str> {
         frame.packed = &packed;
         allowed.resize(frame.agents.len(), None);
         let blocks = allowed.par_chunks_mut(BLOCK).with_min_len(TASK);
-        let due = Due {
+        let due = Deciders {
             is_due: [true; BLOCK],
             gap: [1.0; BLOCK],
             meets: false,

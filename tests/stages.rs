@@ -1,7 +1,7 @@
 //! Random people on random journeys over random floor plans: every scenario is refused with its place, or runs without
 //! panic, hang or fault, and no agent leaves the walkable area.
 //!
-//! 250 cases; more with `BAD_INPUT_TIMES=10 cargo test --release --test engine errands`.
+//! 250 cases; more with `BAD_INPUT_TIMES=10 cargo test --release --test engine stages`.
 
 use std::time::{Duration, Instant};
 
@@ -13,8 +13,8 @@ use sandbox::scenario::measurements::Watched;
 use serde_json::Value;
 
 use crate::common::bounded::cases;
-use crate::common::errands::{Errand, errands};
 use crate::common::plans::{Ring, contains, margin};
+use crate::common::random_journeys::{RandomJourney, random_journeys};
 
 /// Walls that an exit or entrance opens have floor behind them for this far, meters: 3 m out and 3 m aside.
 const BEHIND_LINES: f64 = 4.25;
@@ -34,8 +34,13 @@ fn points(value: &Value) -> Vec<Vector> {
 }
 
 /// Checks that no agent stands in a wall, from the document alone.
-fn check_places(simulation: &Simulation, errand: &Errand) {
-    let list = |key: &str| errand.document[key].as_array().cloned().unwrap_or_default();
+fn check_places(simulation: &Simulation, journey: &RandomJourney) {
+    let list = |key: &str| {
+        journey.document[key]
+            .as_array()
+            .cloned()
+            .unwrap_or_default()
+    };
     let lines = [list("exits"), list("entrances")].concat();
     let lines: Vec<Vec<Vector>> = lines.iter().map(|part| points(&part["line"])).collect();
     let bodies: Vec<Ring> = list("obstacles")
@@ -46,7 +51,7 @@ fn check_places(simulation: &Simulation, errand: &Errand) {
     // Bodies that walk on behind an exit are on the floor behind it.
     for i in agents.present() {
         let (p, id) = (agents.position[i], agents.id[i]);
-        let is_free = errand.plan.is_free(p, 0.0) || margin(&errand.plan.rings, p) < ROUNDING;
+        let is_free = journey.plan.is_free(p, 0.0) || margin(&journey.plan.rings, p) < ROUNDING;
         let is_behind = || {
             lines
                 .iter()
@@ -66,7 +71,7 @@ fn check_places(simulation: &Simulation, errand: &Errand) {
 }
 
 /// Runs a scenario to its end. Returns what its last frame comes to.
-fn run(mut simulation: Simulation, errand: &Errand, secs: f64) -> Simulation {
+fn run(mut simulation: Simulation, journey: &RandomJourney, secs: f64) -> Simulation {
     let mut watched = Watched::default();
     let last = simulation.frame().clock.frame_at(secs);
     while simulation.frame().clock.frame() < last {
@@ -75,7 +80,7 @@ fn run(mut simulation: Simulation, errand: &Errand, secs: f64) -> Simulation {
         simulation.integrate().unwrap();
         let frame = simulation.frame();
         if frame.clock.frame().is_multiple_of(10) || frame.clock.frame() == last {
-            check_places(&simulation, errand);
+            check_places(&simulation, journey);
         }
     }
     assert_eq!(watched.agents_through_walls(&simulation), 0);
@@ -87,8 +92,8 @@ fn run(mut simulation: Simulation, errand: &Errand, secs: f64) -> Simulation {
     simulation
 }
 
-fn check(errand: &Errand) {
-    let scenario = match Scenario::parse(&errand.document.to_string(), "f.json", &[]) {
+fn check(journey: &RandomJourney) {
+    let scenario = match Scenario::parse(&journey.document.to_string(), "f.json", &[]) {
         Ok(scenario) => scenario,
         Err(error) => return assert!(error.to_string().starts_with("f.json"), "{error}"),
     };
@@ -97,18 +102,21 @@ fn check(errand: &Errand) {
         Err(Fault::NoFreePoint { .. }) => return,
         simulation => simulation.unwrap(),
     };
-    let mut half = run(simulation, errand, 1.54);
+    let mut half = run(simulation, journey, 1.54);
     half.evaluate().unwrap();
     let resumed = Simulation::resumed(scene, half.state()).unwrap();
-    let whole = run(half, errand, scenario.duration_secs).digest();
-    assert_eq!(run(resumed, errand, scenario.duration_secs).digest(), whole);
+    let whole = run(half, journey, scenario.duration_secs).digest();
+    assert_eq!(
+        run(resumed, journey, scenario.duration_secs).digest(),
+        whole
+    );
 }
 
 #[test]
 fn random_journeys_run_without_panic_or_hang_and_nobody_leaves_the_floor() {
-    cases(250, errands, |errand| {
+    cases(250, random_journeys, |journey| {
         let start = Instant::now();
-        check(&errand);
+        check(&journey);
         assert!(start.elapsed() < LONGEST, "{:?}", start.elapsed());
         MEMORY
     });

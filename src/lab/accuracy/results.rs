@@ -43,13 +43,13 @@ impl Measured {
 /// The result of one trial in one scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Point {
-    /// The knob and the settings.
+    /// The choice and the settings.
     #[serde(flatten)]
     pub trial: Trial,
     /// Milliseconds per simulated second on one thread.
     #[serde(rename = "ms_per_s")]
     pub cost: Range,
-    /// The errors in the order of [`Found::quantities`]; `None` if a quantity has no value.
+    /// The errors in the order of [`SceneResults::quantities`]; `None` if a quantity has no value.
     pub errors: Vec<Option<Measured>>,
 }
 
@@ -66,7 +66,7 @@ pub(super) struct Judged {
 
 /// The results of one scene.
 #[derive(Clone)]
-pub struct Found {
+pub struct SceneResults {
     /// The scene.
     pub scene: Scene,
     /// The measured quantities.
@@ -86,7 +86,7 @@ const POSITIONS: [f64; 4] = [30.0, 10.0, 3.0, 1.0];
 /// The same for statistics, as relative errors in percent.
 const PARTS: [f64; 3] = [5.0, 2.0, 1.0];
 
-impl Found {
+impl SceneResults {
     /// The error by which settings are compared. For motion: the error of positions after about a second, meters. For
     /// statistics: the largest relative error.
     pub fn overall(&self, point: &Point) -> Option<f64> {
@@ -148,7 +148,7 @@ impl Found {
     /// A table of all points.
     pub fn table(&self) -> Table {
         let mut table = Table::of(&self.points)
-            .column("knob", |point| point.trial.knob.as_str())
+            .column("choice", |point| point.trial.choice.as_str())
             .column("settings", |point| {
                 let default = ["", " (default)"][usize::from(point.trial.is_default)];
                 names(&point.trial.settings) + default

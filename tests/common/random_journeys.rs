@@ -19,7 +19,7 @@ struct Part {
 
 /// A scenario and its plan.
 #[derive(Debug, Clone)]
-pub struct Errand {
+pub struct RandomJourney {
     pub plan: Plan,
     pub document: Value,
 }
@@ -30,7 +30,7 @@ fn parts(kind: &'static str, most: usize) -> impl Strategy<Value = Vec<Part>> {
 }
 
 /// Any scenario of journeys.
-pub fn errands() -> impl Strategy<Value = Errand> {
+pub fn random_journeys() -> impl Strategy<Value = RandomJourney> {
     let places = (
         parts("exits", 3),
         parts("waypoints", 3),
@@ -61,7 +61,7 @@ pub fn errands() -> impl Strategy<Value = Errand> {
     })
 }
 
-fn build(parts: &[Part], seed: u64, profile: &str, how: u8) -> Errand {
+fn build(parts: &[Part], seed: u64, profile: &str, how: u8) -> RandomJourney {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let plan = match how {
         0 => Plan::with_gaps(&mut rng, 6, 0.8),
@@ -102,7 +102,7 @@ fn build(parts: &[Part], seed: u64, profile: &str, how: u8) -> Errand {
             .and_then(|keys| keys.entry(part.kind).or_insert(json!([])).as_array_mut());
         list.unwrap().push(value);
     }
-    Errand { plan, document }
+    RandomJourney { plan, document }
 }
 
 /// The names that later parts can use.
