@@ -1,5 +1,5 @@
 //! The architecture: crates and modules use only those declared above them, each foreign crate is used in one place,
-//! no module has its source elsewhere, there is no `unwrap` outside of tests, no file has more than 400 lines, and no
+//! no module has its source elsewhere, there is no `unwrap` outside of tests, no file has more than 500 lines, and no
 //! line more than 120 characters. The checks of lengths hold for all Rust files, that of `unwrap` for `experiments`,
 //! too.
 
@@ -15,7 +15,7 @@ const FOLDERS: [&str; 6] = [
     "benches",
     "python",
 ];
-const LONGEST_FILE: usize = 400;
+const LONGEST_FILE: usize = 500;
 const LONGEST_LINE: usize = 120;
 
 fn source() -> PathBuf {
@@ -23,7 +23,7 @@ fn source() -> PathBuf {
 }
 
 /// All Rust files under `folder`, sorted.
-fn files(folder: &Path) -> Vec<PathBuf> {
+pub fn files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -46,7 +46,7 @@ fn without_comment(line: &str) -> &str {
 }
 
 /// The code of a file without comments and tests, as lines numbered from 1.
-fn code(path: &Path) -> Vec<(usize, String)> {
+pub fn code(path: &Path) -> Vec<(usize, String)> {
     let text = fs::read_to_string(path).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     // By convention, the tests are the last module of a file.
@@ -273,7 +273,7 @@ fn no_unwrap_outside_tests() {
 }
 
 #[test]
-fn no_file_is_longer_than_four_hundred_lines() {
+fn no_file_is_longer_than_five_hundred_lines() {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
     for path in FOLDERS
         .iter()

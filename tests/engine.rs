@@ -38,6 +38,7 @@ mod from_data;
 mod front;
 mod geometry;
 mod geometry_robustness;
+mod habits;
 mod heading_law;
 mod headings;
 mod identifiability;

@@ -93,8 +93,8 @@ pub struct Agents {
     /// The speed that the walking law allows, held until the next coarse frame, m/s, infinite without a law or agents
     /// in view; `None` for agents that entered since. Empty if no profile has a law that looks ahead.
     pub allowed_speed: Vec<Option<f64>>,
-    /// The heading that the agent follows by the choice of headings, held until the next coarse frame: its number, counted
-    /// from the one along the way, positive to its left. Empty if no profile has this law.
+    /// The heading that the agent follows by the choice of headings, held until the next coarse frame: its number,
+    /// counted from the one along the way, positive to its left. Empty if no profile has this law.
     pub heading: Vec<i8>,
     /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
     /// only, otherwise empty.
@@ -304,8 +304,8 @@ impl Agents {
         self.preferred_speed.is_empty() && self.walks_from.is_empty()
     }
 
-    /// Finds the routes of all agents in coarse frames, and of those that entered since in every frame. `seed` is that of
-    /// the population.
+    /// Finds the routes of all agents in coarse frames, and of those that entered since in every frame. `seed` is that
+    /// of the population.
     pub fn follow(&mut self, routes: &Routes, coarse: bool, seed: u64) {
         if !coarse && !self.lacks_routes && self.route.len() == self.len() {
             return;

@@ -16,9 +16,9 @@ pub const SPEED_RANGE: f32 = 1.8;
 /// Force on walls mapped to the last color, N/m.
 pub const WALL_FORCE_RANGE: f32 = 3000.0;
 
-/// The colors of the terms of an acceleration, those of the paper first, in words and as RGB; white is for their sum. Any two of these colors
-/// differ by at least 20 (CIE76, ΔE*ab), for normal vision and for simulated protanopia and deuteranopia (Machado,
-/// Oliveira and Fernandes 2009, severity 1.0).
+/// The colors of the terms of an acceleration, those of the paper first, in words and as RGB; white is for their sum.
+/// Any two of these colors differ by at least 20 (CIE76, ΔE*ab), for normal vision and for simulated protanopia and
+/// deuteranopia (Machado, Oliveira and Fernandes 2009, severity 1.0).
 pub const TERMS: [(&str, Rgb); 13] = [
     ("pale green", [201, 255, 181]),
     ("yellow", [251, 252, 3]),

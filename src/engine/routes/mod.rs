@@ -1,10 +1,10 @@
 //! Routes around walls: for each goal, a map with the next point to walk to from any position.
 //!
 //! A [`Floor`] is a constrained Delaunay triangulation of the areas that people walk in, with the corners that shortest
-//! routes bend around and the routes between corners. A [`PathMap`] has the way to one goal from any position: the [`Next`]
-//! point or corner, and the length. It is exact for polygons with holes, shared by all agents with that goal, and needs
-//! no search per agent; an agent that is pushed off its way looks it up again. [`around`] keeps clear of the corners on
-//! the way.
+//! routes bend around and the routes between corners. A [`PathMap`] has the way to one goal from any position: the
+//! [`Next`] point or corner, and the length. It is exact for polygons with holes, shared by all agents with that goal,
+//! and needs no search per agent; an agent that is pushed off its way looks it up again. [`around`] keeps clear of the
+//! corners on the way.
 //!
 //! Four folders, each of which uses only those before it: `floor` knows no goals, `paths` no agents; `rooms` divides
 //! floors; `routes` has what agents follow and plan.

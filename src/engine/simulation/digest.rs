@@ -6,10 +6,10 @@ use super::Simulation;
 use crate::math::Vector;
 
 impl Simulation {
-    /// SHA-256, as 64 hexadecimal digits, of the frame number, of the id, position, velocity, states that forces keep, mean density and
-    /// laps of all agents in the order of their ids, and of all arrivals. It does not depend on the order in memory, on
-    /// the number of threads, or on requests by observers: the mean density ρ̂ is included only if the scene needs it
-    /// ([`Needs::density`](crate::scene::Needs::density)).
+    /// SHA-256, as 64 hexadecimal digits, of the frame number, of the id, position, velocity, states that forces keep,
+    /// mean density and laps of all agents in the order of their ids, and of all arrivals. It does not depend on the
+    /// order in memory, on the number of threads, or on requests by observers: the mean density ρ̂ is included only if
+    /// the scene needs it ([`Needs::density`](crate::scene::Needs::density)).
     pub fn digest(&self) -> String {
         let has_mean_density = self.fixed.scene.needs().density;
         let mut hasher = Sha256::new();

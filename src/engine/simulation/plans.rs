@@ -1,5 +1,5 @@
-//! Quickest routes: in coarse frames agents that enter a room compare its openings. Those that have a choice compare them
-//! again now and then.
+//! Quickest routes: in coarse frames agents that enter a room compare its openings. Those that have a choice compare
+//! them again now and then.
 //!
 //! `expected.rs` has the rule. Beyond an opening, the least time to the goal is that of Dijkstra's algorithm over
 //! openings, which runs once per second for each goal. Agents follow the path map of their goal as long as its way

@@ -1,8 +1,8 @@
 //! The trials in a scene: values of the numerical choices ("choices") that act in it.
 //!
 //! Every entry of the scene's study is a trial, except the first one, which has no settings, and `reference`, with
-//! which statistics are compared. A trial's label is `CHOICE` or `CHOICE: CURVE`; pictures join the points of a curve by a
-//! line. ` (best)` marks the value at which the choice adds no error.
+//! which statistics are compared. A trial's label is `CHOICE` or `CHOICE: CURVE`; pictures join the points of a curve
+//! by a line. ` (best)` marks the value at which the choice adds no error.
 
 use serde::{Serialize, Serializer};
 use serde_json::Value;

@@ -40,9 +40,9 @@ pub enum Value {
 
 use Value::{Count, Name, Number, OfForce};
 
-/// The name, the meaning with its unit, and the value of each column of all scenes. In a periodic scene each lap of an agent has an
-/// id of its own: its remainder modulo the number of agents is the agent's id. The goal of an agent that walks in a
-/// direction is its start.
+/// The name, the meaning with its unit, and the value of each column of all scenes. In a periodic scene each lap of an
+/// agent has an id of its own: its remainder modulo the number of agents is the agent's id. The goal of an agent that
+/// walks in a direction is its start.
 #[rustfmt::skip] // One line each.
 pub const COLUMNS: [(&str, &str, Value); 27] = [
     ("frame", "number of the frame at the file's own rate", Count(|row| row.number)),

@@ -24,7 +24,8 @@ pub(super) struct Openings {
     doors: Vec<u16>,
 }
 
-/// The openings on routes that are known from a corner on: by what the routes lead to, and the first two of their points.
+/// The openings on routes that are known from a corner on: by what the routes lead to, and the first two of their
+/// points.
 pub(super) type Known = BTreeMap<(u16, [u64; 4]), Vec<Crossing>>;
 
 impl Openings {

@@ -157,8 +157,8 @@ fn on_legs(keys: &File, scene: &Scene) -> Option<String> {
         Some(&scene.groups[usize::from(walker.group)])
     })?;
     Some(format!(
-        "{}: people with legs walk to a goal (profile `{}`); legs are a law of crowds that stand and sway, not of walks \
-         and evacuations",
+        "{}: people with legs walk to a goal (profile `{}`); legs are a law of crowds that stand and sway, not of \
+         walks and evacuations",
         shown(&group.name),
         shown(&group.blend.name)
     ))

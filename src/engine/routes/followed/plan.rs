@@ -19,7 +19,8 @@ pub struct Plan {
     /// Whether it walks to the opening, or to the goal in the room, not by the shortest way: that leads elsewhere, or a
     /// crowd stands before the opening.
     pub detours: bool,
-    /// The frame in which it is due again: it compares its routes, or only draws the next such frame if it has no choice.
+    /// The frame in which it is due again: it compares its routes, or only draws the next such frame if it has no
+    /// choice.
     pub decides_at: u64,
     /// The number of draws of that frame so far.
     pub turns: u32,

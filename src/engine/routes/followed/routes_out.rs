@@ -39,8 +39,8 @@ impl RoutesOut {
 }
 
 impl Routes {
-    /// The routes to the goal of path map `map` from `p`, in triangle `t` of the rooms; `None` without rooms. If they are
-    /// known, `others` are the routes from `p` to another goal, and `length` is that of the shortest way, meters.
+    /// The routes to the goal of path map `map` from `p`, in triangle `t` of the rooms; `None` without rooms. If they
+    /// are known, `others` are the routes from `p` to another goal, and `length` is that of the shortest way, meters.
     pub fn routes_out(
         &self,
         (p, t): (Vector, u32),
@@ -74,8 +74,8 @@ impl Routes {
         })
     }
 
-    /// The shortest way from `p`, in triangle `t` of the rooms; all routes leave the room by the side `only`, if that is
-    /// known.
+    /// The shortest way from `p`, in triangle `t` of the rooms; all routes leave the room by the side `only`, if that
+    /// is known.
     fn shortest_out(
         &self,
         (p, t): (Vector, u32),
