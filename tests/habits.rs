@@ -137,14 +137,24 @@ fn few_functions_are_long_few_names_are_bound_again_and_few_arguments_are_wide_t
 
 #[test]
 fn the_counts_are_those_of_small_texts() {
-    let lines = |text: &str| -> Vec<String> { text.lines().map(str::to_owned).collect() };
-    let text = "pub(super) fn f(a: u8) {\n    let x = 1;\n    let y = 2;\n    let x = x + y;\n    {\n        let x = 3;\n    }\n}\nfn g() {}\n";
-    assert_eq!(
-        (lengths(&lines(text)), rebound(&lines(text))),
-        (vec![8, 1], 1)
-    );
-    let tuples = "fn f(a: (u8, u8, u8)) {}\nfn g((a, b, c): (u8, u8, u8), d: &(u8, u8)) {}\nfn h(f: impl Fn(u8, u8, u8)) {}\nfn i(v: [(u8, u8, u8); 2]) {}";
-    let widths = widest_tuples(tuples);
-    assert_eq!((widths[0], widths[2], widths[3]), (3, 0, 3));
-    assert!(widths[1] >= 3);
+    let lines: Vec<String> = SMALL.lines().map(str::to_owned).collect();
+    assert_eq!((lengths(&lines), rebound(&lines)), (vec![8, 1], 1));
+    assert_eq!(widest_tuples(TUPLES), [3, 3, 0, 3]);
 }
+
+const SMALL: &str = "pub(super) fn f(a: u8) {
+    let x = 1;
+    let y = 2;
+    let x = x + y;
+    {
+        let x = 3;
+    }
+}
+fn g() {}
+";
+
+const TUPLES: &str = "fn f(a: (u8, u8, u8)) {}
+fn g((a, b, c): (u8, u8, u8), d: &(u8, u8)) {}
+fn h(f: impl Fn(u8, u8, u8)) {}
+fn i(v: [(u8, u8, u8); 2]) {}
+";
