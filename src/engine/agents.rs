@@ -341,11 +341,16 @@ impl Agents {
         destination(self.trip.get(i).and_then(Option::as_ref), self.goal[i])
     }
 
+    /// The states that the force of this name keeps; `None` if no such force keeps any.
+    #[inline]
+    pub fn states_of(&self, force: &str) -> Option<&States> {
+        self.states.iter().find(|states| states.force == force)
+    }
+
     /// The state that the force of this name keeps for agent `i`; `None` if it does not act on it.
     #[inline]
     pub fn state(&self, force: &str, i: usize) -> Option<&[f64]> {
-        let states = self.states.iter().find(|states| states.force == force)?;
-        states.of(i)
+        self.states_of(force)?.of(i)
     }
 
     /// Agent `i` finds its way again.

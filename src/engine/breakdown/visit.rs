@@ -173,7 +173,7 @@ fn in_words(reason: Reason) -> &'static str {
         Reason::Nearest => "the shortest way",
         Reason::Quickest => "the least expected time",
         Reason::NotClearlyNearer => "kept: no way is shorter by 0.5 m",
-        Reason::NotClearlyQuicker => "kept: no place takes less than 80 % of its time",
+        Reason::NotClearlyQuicker => "kept: no place saves at least 1 s and 10 % of its time",
         Reason::Drawn => "drawn at random",
         Reason::Fewest => "the fewest agents were bound for it",
     }

@@ -168,28 +168,44 @@ impl Legs {
     }
 
     /// A f(|d|, B) in the direction d, m/s², for people of mass 1.
-    fn push(&self, d: Vector, range: f64) -> Vector {
-        let [here, there] = [d.norm(), self.legs_reach].map(|d| (-d / range).exp());
-        direction(d) * (self.legs_strength * (here - there).max(0.0))
+    fn push(&self, half: Half) -> impl Fn(Vector) -> Vector {
+        let range = self.range_of(half);
+        let at_reach = (-self.legs_reach / range).exp();
+        let strength = self.legs_strength;
+        move |d| {
+            let distance = d.norm();
+            let force = strength * ((-distance / range).exp() - at_reach).max(0.0);
+            d * (force / distance.max(f64::MIN_POSITIVE))
+        }
     }
 
     /// The repulsion by other agents, m/s².
     fn repulsion_by_agents(&self, frame: &Frame, i: usize, half: Half) -> Vector {
         let agents = frame.agents;
-        let lean = |k: usize| match half {
-            Half::Body => Vector::zeros(),
-            Half::Legs => lean(agents, k),
+        let push = self.push(half);
+        let near = frame.near(i, self.legs_reach);
+        let sum: Vector = match half {
+            Half::Body => near.map(|(_, r_ij)| push(r_ij)).sum(),
+            Half::Legs => {
+                let states = agents.states_of(NAME);
+                let lean = |k: usize| {
+                    let state = states.and_then(|states| states.of(k));
+                    state.map_or(Vector::zeros(), |state| {
+                        agents.position[k] - parts(state)[0]
+                    })
+                };
+                let own = lean(i);
+                near.map(|(j, r_ij)| push(r_ij - (own - lean(j)))).sum()
+            }
         };
-        let (own, range) = (lean(i), self.range_of(half));
-        let pushes = (frame.near(i, self.legs_reach))
-            .map(|(j, r_ij)| self.push(r_ij - (own - lean(j)), range));
-        pushes.sum::<Vector>() / agents.mass[i]
+        sum / agents.mass[i]
     }
 
     /// The repulsion by walls, m/s². Walls act on legs if they are near the body.
     fn repulsion_by_walls(&self, frame: &Frame, i: usize, half: Half) -> Vector {
         let (agents, walls) = (frame.agents, frame.walls);
         let body = agents.position[i];
+        let push = self.push(half);
         let mut sum = Vector::zeros();
         for k in frame.neighbors.near_walls(i) {
             let wall = walls.wall(*k);
@@ -206,7 +222,7 @@ impl Legs {
                 Half::Body => ahead,
                 Half::Legs => facing(body - lean(agents, i)).map(|(_, away)| away),
             };
-            sum += away.map_or(Vector::zeros(), |away| self.push(away, self.range_of(half)));
+            sum += away.map_or(Vector::zeros(), &push);
         }
         sum / agents.mass[i]
     }
@@ -275,13 +291,9 @@ impl Force for Legs {
         set(state, agents.position[i], velocity);
     }
 
-    fn change(&self, frame: &Frame, i: usize, rates: &mut [f64]) {
+    fn change(&self, frame: &Frame, i: usize, state: &[f64], rates: &mut [f64]) {
         let acceleration = self.accelerations(frame, i, Half::Legs).iter().sum();
-        set(
-            rates,
-            velocity(frame.agents, i).unwrap_or_default(),
-            acceleration,
-        );
+        set(rates, parts(state)[1], acceleration);
     }
 
     fn advance(&self, step: &Step, rates: &[f64], state: &mut [f64]) {

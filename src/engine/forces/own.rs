@@ -66,8 +66,8 @@ pub trait Force: Any + Debug + Send + Sync {
 
     /// The rates of change of the state of agent `i` of a frozen frame, per second: finite numbers that depend only on
     /// the frame.
-    fn change(&self, frame: &Frame, i: usize, rates: &mut [f64]) {
-        let _ = (frame, i);
+    fn change(&self, frame: &Frame, i: usize, state: &[f64], rates: &mut [f64]) {
+        let _ = (frame, i, state);
         rates.fill(0.0);
     }
 
