@@ -49,10 +49,7 @@ fn settings_override_the_parameters_of_a_calibrated_profile() {
         let whole = catalog::named(profile.name, &Parameters::default()).unwrap();
         let base = catalog::named(profile.base, &profile.parameters);
         assert_eq!(whole.sph, base.unwrap().sph);
-        let changed = Parameters {
-            rest_density_max: Some(4.5),
-            ..Parameters::default()
-        };
+        let changed = Parameters::of([("rest_density_max", 4.5)]).unwrap();
         let changed = catalog::named(profile.name, &changed).unwrap();
         assert_eq!(changed.sph.rest_density_max, 4.5);
         assert_eq!(changed.steps(), whole.steps());
