@@ -71,6 +71,7 @@ pub mod prelude {
     pub use crate::engine::breakdown::Breakdown;
     pub use crate::engine::clock::Clock;
     pub use crate::engine::forces::own::Force;
+    pub use crate::engine::forces::rates::{Extremes, Rates};
     pub use crate::engine::frame::Frame;
     pub use crate::engine::geometry::Polygon;
     pub use crate::engine::math::Vector;

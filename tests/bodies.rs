@@ -143,7 +143,7 @@ fn a_part_of_the_radius_counts_in_contacts() {
         own
     };
     let whole = terms(&Parameters::default());
-    for (scale, wall_scale) in [(1.0, 1.0), (0.9, 0.5), (0.5, 0.9), (0.7, 0.3)] {
+    for (scale, wall_scale) in [(1.0_f64, 1.0_f64), (0.9, 0.5), (0.5, 0.9), (0.7, 0.3)] {
         let part = terms(
             &Parameters::of([("contact_scale", scale), ("wall_contact_scale", wall_scale)])
                 .unwrap(),

@@ -94,7 +94,7 @@ fn every_integrator_conserves_the_momentum_of_a_free_crowd() {
             ("agent_stiffness", contact),
         ])
         .unwrap();
-        for scene in [free(parameters), ring(parameters)] {
+        for scene in [free(parameters.clone()), ring(parameters)] {
             for integrator in Integrator::ALL {
                 let [before, after] = before_and_after(&scene, integrator, 100, momentum);
                 let change = (after - before).norm();

@@ -107,7 +107,13 @@ proptest! {
         start in 0.1..1.9_f64,
         corner in 0..4_usize,
     ) {
-        let none = Parameters::of([("wall_stiffness", 0.0), ("agent_stiffness", 0.0), ("wall_strength", 0.0), ("goal_scale", 30.0)]).unwrap();
+        let none = Parameters::of([
+            ("wall_stiffness", 0.0),
+            ("agent_stiffness", 0.0),
+            ("wall_strength", 0.0),
+            ("goal_scale", 30.0),
+        ])
+        .unwrap();
         let shift = vector(shift, -shift);
         let ring = turned(&cell(2.0, 0.01), angle, shift);
         let [middle, target] = [7, 9, 6, 8].map(|k| ring.points()[k])[corner..]

@@ -12,12 +12,12 @@ use sandbox::engine::pairs::Precision;
 use sandbox::engine::random::{Purpose, stream};
 use sandbox::engine::scene::Scene;
 use sandbox::engine::simulation::Simulation;
-use sandbox::scenario::catalog::{Parameters, WalkingLawKind};
+use sandbox::scenario::catalog::{self, Parameters, WalkingLawKind};
 
 fn parameters() -> Parameters {
     Parameters::of([("headway_anticipation", 0.4)])
         .unwrap()
-        .with("walking_law", WalkingLawKind::Headings)
+        .with("walking_law", "headings")
         .unwrap()
 }
 
@@ -29,7 +29,12 @@ fn evading(side_preference: f64) -> Parameters {
 }
 
 fn law() -> Headings {
-    parameters().headings()
+    law_of(&parameters())
+}
+
+fn law_of(parameters: &Parameters) -> Headings {
+    let profile = catalog::plain("sph", parameters).unwrap();
+    *profile.walking.unwrap().headings().unwrap()
 }
 
 fn lone(agents: Vec<NewAgent>, walls: Vec<Polygon>) -> Scene {
@@ -79,7 +84,7 @@ fn agents_choose_the_heading_with_the_greatest_utility() {
     ];
     for (precision, exact, side) in cases {
         let parameters = evading(side);
-        let law = parameters.headings();
+        let law = law_of(&parameters);
         let (mut turned, mut all) = (0, 0);
         for seed in 0..10 {
             let mut scene = crowd(WalkingLawKind::Headings, seed);
@@ -246,7 +251,7 @@ fn a_fast_agent_overtakes_a_slow_one_and_with_the_headway_law_stays_behind() {
     );
     let behind = lead(
         &Parameters::default()
-            .with("walking_law", WalkingLawKind::Headway)
+            .with("walking_law", "headway")
             .unwrap(),
     );
     assert!(behind < 0.0, "{behind}");
@@ -306,7 +311,7 @@ fn motivation_and_density_shorten_the_gap_and_narrowings_lengthen_it() {
     ])
     .unwrap()
     .or(&parameters());
-    let gap = gap.headings().gap;
+    let gap = law_of(&gap).gap;
     assert_eq!(gap.factor(0.0, 0.0, None), 1.0);
     assert_eq!(gap.factor(1.0, 0.0, None), 0.5);
     assert!((gap.factor(0.0, 9.0, None) - 0.6).abs() < 1e-12);

@@ -149,7 +149,7 @@ fn the_terms_of_bodies_and_of_legs_add_up() {
 fn profiles_of_a_blend_share_their_legs() {
     let profile = |parameters: &Parameters| catalog::plain("sph", parameters).unwrap();
     let steps = [Parameters::default(), alone(1.0)].map(|parameters| BlendStep {
-        at_density: parameters.goal_scale.unwrap_or(3.0),
+        at_density: (parameters.get("goal_scale")).map_or(3.0, |scale| scale.as_f64().unwrap()),
         profile: profile(&parameters),
     });
     let [plain, with_legs] = steps;

@@ -9,6 +9,7 @@ use sandbox::engine::random::{Purpose, stream};
 use sandbox::engine::scene::Scene;
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::{Parameters, WalkingLawKind};
+use serde_json::json;
 
 use super::{blend_with, breakdown, scene, vector};
 
@@ -16,7 +17,9 @@ use super::{blend_with, breakdown, scene, vector};
 pub const LOOKING: [WalkingLawKind; 2] = [WalkingLawKind::Headway, WalkingLawKind::DensityAhead];
 
 pub fn with(law: WalkingLawKind) -> Parameters {
-    Parameters::default().with("walking_law", law).unwrap()
+    Parameters::default()
+        .with("walking_law", json!(law))
+        .unwrap()
 }
 
 /// A headway law with anticipation.

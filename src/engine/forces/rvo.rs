@@ -40,7 +40,7 @@ pub struct Rvo {
     #[schemars(range(min = 1, max = 1e6))]
     pub candidates: u32,
     /// As [`SocialForce::avoidance_radius`](super::social::SocialForce::avoidance_radius), meters.
-    #[schemars(skip)]
+    #[serde(skip)]
     pub avoidance_radius: f64,
 }
 

@@ -8,7 +8,8 @@ use crate::error::{quote::shown, suggestion};
 use crate::keys::{calibrated, parameters::Walking};
 use engine::density::SphParameters;
 use engine::forces::walking::{Headings, WalkingLaw};
-use engine::forces::{contact::Contact, drag::Drag, viscosity::Viscosity};
+use engine::forces::{contact::Contact, drag::Drag, rvo::Rvo};
+use engine::forces::{social::SocialForce, viscosity::Viscosity};
 use engine::profile::{Blend, BlendError, BlendStep, Navigation, Profile};
 
 /// The names of §5.5.
@@ -62,7 +63,10 @@ impl Parameters {
             navigation: match kind {
                 NavigationKind::Goal => Navigation::Goal(self.part()),
                 NavigationKind::Social => Navigation::Social(self.part(), self.part()),
-                NavigationKind::Rvo => Navigation::Rvo(self.part()),
+                NavigationKind::Rvo => Navigation::Rvo(Rvo {
+                    avoidance_radius: self.part::<SocialForce>().avoidance_radius,
+                    ..self.part()
+                }),
             },
             walking: self.walking(walking_law),
             pressure: sph && self.part::<SphParameters>().gas_constant != 0.0,

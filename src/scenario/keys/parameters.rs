@@ -1,7 +1,6 @@
 //! The parameters of profiles: values by name, and the structs of the engine that they set.
 
 use std::fmt;
-use std::iter::once;
 use std::sync::{Arc, LazyLock};
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -10,8 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value, json};
 
 use crate::error::in_plain_words;
-use crate::keys::catalog::ProfileError;
-use crate::keys::names::names;
+use crate::keys::{catalog::ProfileError, names::names};
 use engine::density::SphParameters;
 use engine::forces::walking::{DensityAhead, Headings, Headway, headings::Gap};
 use engine::forces::{contact::Contact, drag::Drag, goal::GoalForce, legs::Legs, own::Force};
@@ -94,10 +92,7 @@ impl Part {
         Self {
             names: names::<T>,
             schema: T::json_schema,
-            read: |name, value| {
-                let part: T = serde_json::from_value(json!({ name: value }))?;
-                Ok(json!(part)[name].take())
-            },
+            read: |name, value| Ok(json!(T::deserialize(json!({ name: value }))?)[name].take()),
         }
     }
 }
@@ -114,17 +109,12 @@ fn parts() -> impl Iterator<Item = &'static Part> {
     PARTS.iter().chain(FORCES.iter().map(|force| &force.part))
 }
 
-/// The names of all parameters.
+/// The names of all parameters. Each is a field of one struct, or switches a force on.
 static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
-    let mut all = Vec::new();
     let of_parts = PARTS.iter().flat_map(|part| (part.names)());
-    let of_force = |force: &'static Switched| once(&force.name).chain((force.part.names)());
-    for &name in of_parts.chain(FORCES.iter().flat_map(of_force)) {
-        if !all.contains(&name) {
-            all.push(name);
-        }
-    }
-    all
+    let switches = FORCES.iter().map(|force| &force.name);
+    let of_forces = FORCES.iter().flat_map(|force| (force.part.names)());
+    of_parts.chain(switches).chain(of_forces).copied().collect()
 });
 
 /// Parameters of a profile; `None` means the paper's value (§5.5). Where a text says that the paper's time step is
@@ -150,21 +140,12 @@ impl Parameters {
     /// # Errors
     /// As [`of`](Self::of).
     pub fn with(&self, name: &str, value: impl Into<Value>) -> Result<Self, ProfileError> {
-        let value = value.into();
-        if value.is_null() {
-            let reason = format!("the parameter {name} must be a finite number"); // JSON has no others
-            return Err(ProfileError::Parameter(reason));
-        }
-        let one = Self::deserialize(json!({ name: value })).map_err(|error| {
-            let reason = in_plain_words(&error.to_string());
-            ProfileError::Parameter(format!("{name}: {reason}"))
-        })?;
-        Ok(one.or(self))
-    }
-
-    /// The value of a parameter, if it is given.
-    pub fn get(&self, name: &str) -> Option<&Value> {
-        self.0.get(name)
+        let reason = match Self::deserialize(Value::from_iter([(name, value)])) {
+            Ok(one) if !one.0.is_empty() => return Ok(one.or(self)),
+            Ok(_) => format!("the parameter {name} must be a finite number"), // others are null in JSON
+            Err(error) => format!("{name}: {}", in_plain_words(&error.to_string())),
+        };
+        Err(ProfileError::Parameter(reason))
     }
 
     /// The values that are given, by name.
@@ -172,13 +153,16 @@ impl Parameters {
         &self.0
     }
 
+    /// The value of a parameter, if it is given.
+    pub fn get(&self, name: &str) -> Option<&Value> {
+        self.0.get(name)
+    }
+
     /// These values, and those of `fallback` where these are not given.
     pub fn or(&self, fallback: &Self) -> Self {
-        let all = fallback.0.iter().chain(&self.0);
-        Self(
-            all.map(|(name, value)| (name.clone(), value.clone()))
-                .collect(),
-        )
+        let mut all = fallback.clone();
+        all.0.extend(self.0.clone());
+        all
     }
 
     /// The part of the engine that these values set; other fields have their defaults.
@@ -188,18 +172,14 @@ impl Parameters {
 
     /// The forces that are not in the paper.
     pub fn forces(&self) -> Vec<Arc<dyn Force>> {
-        let on = FORCES
-            .iter()
-            .filter(|force| self.get(force.name) == Some(&Value::Bool(true)));
+        let is_on = |force: &&Switched| self.get(force.name) == Some(&true.into());
+        let on = FORCES.iter().filter(is_on);
         on.map(|force| (force.force)(self)).collect()
     }
 
     /// All forces that are not in the paper and that parameters can switch on.
     pub fn every_force() -> Vec<Arc<dyn Force>> {
-        FORCES
-            .iter()
-            .map(|force| (force.force)(&Self::default()))
-            .collect()
+        FORCES.map(|of| (of.force)(&Self::default())).into()
     }
 }
 
@@ -208,7 +188,7 @@ fn schema(generator: &mut SchemaGenerator) -> Schema {
     let mut properties = Map::new();
     for force in &FORCES {
         let switch = json!({"type": "boolean", "description": force.about, "default": false});
-        properties.insert(force.name.to_owned(), switch);
+        properties.insert(force.name.into(), switch);
     }
     for part in parts() {
         let mut schema = (part.schema)(generator).to_value();
@@ -218,7 +198,7 @@ fn schema(generator: &mut SchemaGenerator) -> Schema {
     for field in properties.values_mut().filter_map(Value::as_object_mut) {
         if let Some(definition) = field.remove("$ref") {
             let ways = json!([{"$ref": definition}, {"type": "null"}]);
-            field.insert("anyOf".to_owned(), ways);
+            field.insert("anyOf".into(), ways);
         } else if let Some(kind @ Value::String(_)) = field.get_mut("type") {
             *kind = json!([kind, "null"]);
         }
@@ -259,16 +239,15 @@ impl<'de> DeserializeSeed<'de> for Field<'_> {
     type Value = Option<Value>;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
-        let Self(name) = self;
-        if !NAMES.contains(&name) {
-            return Err(D::Error::unknown_field(name, &NAMES));
+        if !NAMES.contains(&self.0) {
+            return Err(D::Error::unknown_field(self.0, &NAMES));
         }
-        let read = |value| match parts().find(|part| (part.names)().contains(&name)) {
-            Some(part) => (part.read)(name, value),
+        let read = |value| match parts().find(|part| (part.names)().contains(&self.0)) {
+            Some(part) => (part.read)(self.0, value),
             None => bool::deserialize(value).map(Value::from), // a switch
         };
-        let given: Option<Value> = Option::deserialize(deserializer)?;
-        given.map(read).transpose().map_err(D::Error::custom)
+        let value = Option::deserialize(deserializer)?.map(read);
+        value.transpose().map_err(D::Error::custom)
     }
 }
 
@@ -294,26 +273,15 @@ mod tests {
 
     #[test]
     fn values_that_are_no_parameters_are_errors_with_their_names() {
-        let errors = [
-            (
-                Parameters::of([("gas_constant", f64::NAN)]),
-                "the parameter gas_constant must be a finite number",
-            ),
-            (
-                Parameters::of([("viscosity", f64::INFINITY)]),
-                "the parameter viscosity must be a finite number",
-            ),
-            (
-                Parameters::of([("viscosty", 5.0)]),
-                "viscosty: unknown key `viscosty`; did you mean `viscosity`?",
-            ),
-            (
-                Parameters::of([("legs", 5.0)]),
-                "legs: invalid type: floating point `5.0`, expected true or false",
-            ),
-        ];
-        for (error, said) in errors {
-            assert_eq!(error.unwrap_err().to_string(), said);
+        for (name, number) in [("gas_constant", f64::NAN), ("viscosity", f64::INFINITY)] {
+            let error = Parameters::of([(name, number)]).unwrap_err();
+            let said = format!("the parameter {name} must be a finite number");
+            assert_eq!(error.to_string(), said);
         }
+        let said = |name: &str| Parameters::of([(name, 5.5)]).unwrap_err().to_string();
+        let number = "invalid type: floating point `5.5`, expected";
+        assert_eq!(said("legs"), format!("legs: {number} true or false"));
+        let unknown = "viscosty: unknown key `viscosty`; did you mean `viscosity`?";
+        assert_eq!(said("viscosty"), unknown);
     }
 }
