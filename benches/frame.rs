@@ -18,10 +18,7 @@ fn crowd(count: u32, profile: &str) -> Simulation {
         rows: side as u32,
         jitter: 0.05,
     };
-    let parameters = Parameters {
-        viscosity: Some(5.0),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("viscosity", 5.0)]).unwrap();
     let mut scene = Scene::default();
     let group = scene.add_group(Group {
         counted: false,

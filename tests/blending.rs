@@ -178,10 +178,7 @@ fn a_profile_without_weight_is_not_evaluated() {
 
 #[test]
 fn terms_that_a_profile_lacks_are_absent() {
-    let parameters = Parameters {
-        gas_constant: Some(0.0),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("gas_constant", 0.0)]).unwrap();
     let simulation = evaluated(huddle(blend_with("sph", &parameters), 1.0));
     let terms = breakdown(&simulation, 0).profiles[0].accelerations.clone();
     let present: Vec<&str> = terms.listed().map(|(name, _)| name).collect();

@@ -143,12 +143,11 @@ fn a_part_of_the_radius_counts_in_contacts() {
         own
     };
     let whole = terms(&Parameters::default());
-    for (scale, wall_scale) in [(1.0, 1.0), (0.9, 0.5), (0.5, 0.9), (0.7, 0.3)] {
-        let part = terms(&Parameters {
-            contact_scale: Some(scale),
-            wall_contact_scale: Some(wall_scale),
-            ..Parameters::default()
-        });
+    for (scale, wall_scale) in [(1.0_f64, 1.0_f64), (0.9, 0.5), (0.5, 0.9), (0.7, 0.3)] {
+        let part = terms(
+            &Parameters::of([("contact_scale", scale), ("wall_contact_scale", wall_scale)])
+                .unwrap(),
+        );
         let own = part.profiles[0].accelerations.clone();
         let agents = -1000.0 * (0.48 * scale - 0.3).max(0.0);
         let wall = 1000.0 * (0.24 * wall_scale - 0.1).max(0.0);

@@ -49,10 +49,7 @@ fn settings_override_the_parameters_of_a_calibrated_profile() {
         let whole = catalog::named(profile.name, &Parameters::default()).unwrap();
         let base = catalog::named(profile.base, &profile.parameters);
         assert_eq!(whole.sph, base.unwrap().sph);
-        let changed = Parameters {
-            rest_density_max: Some(4.5),
-            ..Parameters::default()
-        };
+        let changed = Parameters::of([("rest_density_max", 4.5)]).unwrap();
         let changed = catalog::named(profile.name, &changed).unwrap();
         assert_eq!(changed.sph.rest_density_max, 4.5);
         assert_eq!(changed.steps(), whole.steps());
@@ -79,16 +76,16 @@ fn a_profile_based_on_a_calibrated_one_has_its_parameters() {
 fn a_blend_takes_the_rest_density_of_the_calibrated_profile_in_it() {
     // All profiles of a blend have the same legs: those with legs fit no profile of the paper.
     let without_legs = calibrated::all().iter();
-    for profile in without_legs.filter(|profile| profile.parameters.legs.is_none()) {
+    for profile in without_legs.filter(|profile| profile.parameters.get("legs").is_none()) {
         let blend = json!({"blend": [
             {"at_density": 1, "profile": {"base": "sf",
-                "parameters": {"contact_scale": profile.parameters.contact_scale}}},
+                "parameters": {"contact_scale": profile.parameters.get("contact_scale")}}},
             {"at_density": 2, "profile": profile.name}]});
         let scenario = parsed(&json!({"duration_secs": 1, "profile": blend,
             "agents": [{"position": [0, 0], "goal": [9, 0]}]}));
         let blend = &scenario.scene.groups[0].blend;
-        let own = profile.parameters.rest_density_max.unwrap();
-        assert_eq!(blend.sph.rest_density_max, own);
+        let own = profile.parameters.get("rest_density_max").unwrap();
+        assert_eq!(blend.sph.rest_density_max, *own);
     }
 }
 
@@ -115,7 +112,7 @@ fn mean_speed(profile: &str, columns: u32, rows: u32) -> f64 {
 #[test]
 fn people_walk_freely_where_it_is_loose_and_slowly_where_it_is_dense() {
     let with_law = calibrated::all().iter();
-    for profile in with_law.filter(|profile| profile.parameters.walking_law.is_some()) {
+    for profile in with_law.filter(|profile| profile.parameters.get("walking_law").is_some()) {
         let [loose, middle, dense] = [(14, 2), (30, 4), (48, 5)]
             .map(|(columns, rows)| mean_speed(profile.name, columns, rows));
         assert!(loose > 0.95 * 1.34 && loose < 1.05 * 1.34, "{loose}");

@@ -13,12 +13,13 @@ use sandbox::scenario::catalog::Parameters;
 /// A crowd without goal forces. The rest density is below the density of a lone agent, so that every pressure is
 /// positive.
 fn free(parameters: Parameters) -> Scene {
-    let parameters = Parameters {
-        goal_scale: Some(0.0),
-        rest_density_min: Some(1.0),
-        rest_density_max: Some(1.0),
-        ..parameters
-    };
+    let parameters = Parameters::of([
+        ("goal_scale", 0.0),
+        ("rest_density_min", 1.0),
+        ("rest_density_max", 1.0),
+    ])
+    .unwrap()
+    .or(&parameters);
     let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
     scene.max_speed = 100.0;
     scene.agents = moving(block(Vector::zeros(), 8, 8, 0.42, Vector::zeros()));
@@ -87,13 +88,13 @@ fn every_integrator_conserves_the_momentum_of_a_free_crowd() {
         (0.0, 0.0, 1000.0),
         (200.0, 5.0, 50.0),
     ] {
-        let parameters = Parameters {
-            gas_constant: Some(k),
-            viscosity: Some(mu),
-            agent_stiffness: Some(contact),
-            ..Parameters::default()
-        };
-        for scene in [free(parameters), ring(parameters)] {
+        let parameters = Parameters::of([
+            ("gas_constant", k),
+            ("viscosity", mu),
+            ("agent_stiffness", contact),
+        ])
+        .unwrap();
+        for scene in [free(parameters.clone()), ring(parameters)] {
             for integrator in Integrator::ALL {
                 let [before, after] = before_and_after(&scene, integrator, 100, momentum);
                 let change = (after - before).norm();
@@ -111,12 +112,14 @@ fn every_integrator_conserves_the_momentum_of_a_free_crowd() {
 #[test]
 fn semi_implicit_steps_conserve_angular_momentum_under_central_forces() {
     let crowd = |k, mu| {
-        free(Parameters {
-            gas_constant: Some(k),
-            viscosity: Some(mu),
-            agent_stiffness: Some(1000.0),
-            ..Parameters::default()
-        })
+        free(
+            Parameters::of([
+                ("gas_constant", k),
+                ("viscosity", mu),
+                ("agent_stiffness", 1000.0),
+            ])
+            .unwrap(),
+        )
     };
     let change = |scene: &Scene, integrator| {
         let [before, after] = before_and_after(scene, integrator, 100, angular_momentum);
@@ -131,13 +134,13 @@ fn semi_implicit_steps_conserve_angular_momentum_under_central_forces() {
 
 /// Soft discs in a closed room, which overlap slightly at the start.
 fn billiard(time_step: f64) -> Scene {
-    let parameters = Parameters {
-        goal_scale: Some(0.0),
-        gas_constant: Some(0.0),
-        agent_stiffness: Some(200.0),
-        wall_stiffness: Some(200.0),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([
+        ("goal_scale", 0.0),
+        ("gas_constant", 0.0),
+        ("agent_stiffness", 200.0),
+        ("wall_stiffness", 200.0),
+    ])
+    .unwrap();
     let (low, high) = (-1.0, 4.1);
     let walls = vec![
         rectangle([low, 0.0], [low, high]),

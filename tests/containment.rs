@@ -48,10 +48,7 @@ fn all_agents_in(simulation: &Simulation, inside: impl Fn(Vector) -> bool) -> bo
 
 #[test]
 fn a_wall_of_one_centimeter_holds_three_hundred_people() {
-    let parameters = Parameters {
-        goal_scale: Some(10.0),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("goal_scale", 10.0)]).unwrap();
     let thin = rectangle([6.0, 6.01], [-1.0, 7.0]);
     let sides = [
         rectangle([-2.0, 6.5], [-2.0, -1.0]),
@@ -73,18 +70,14 @@ fn a_wall_of_one_centimeter_holds_three_hundred_people() {
 #[test]
 fn a_stopped_move_is_counted_and_loses_its_inward_velocity() {
     // Without contact and social forces, only containment stops the agent.
-    let parameters = Parameters {
-        wall_stiffness: Some(0.0),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("wall_stiffness", 0.0)]).unwrap();
     let mut scene = scene(
         vec![rectangle([1.0, 1.01], [-9.0, 9.0])],
         blend_with(
             "sf",
-            &Parameters {
-                wall_strength: Some(0.0),
-                ..parameters
-            },
+            &Parameters::of([("wall_strength", 0.0)])
+                .unwrap()
+                .or(&parameters),
         ),
     );
     scene.agents = vec![walker(
@@ -114,13 +107,13 @@ proptest! {
         start in 0.1..1.9_f64,
         corner in 0..4_usize,
     ) {
-        let none = Parameters {
-            wall_stiffness: Some(0.0),
-            agent_stiffness: Some(0.0),
-            wall_strength: Some(0.0),
-            goal_scale: Some(30.0),
-            ..Parameters::default()
-        };
+        let none = Parameters::of([
+            ("wall_stiffness", 0.0),
+            ("agent_stiffness", 0.0),
+            ("wall_strength", 0.0),
+            ("goal_scale", 30.0),
+        ])
+        .unwrap();
         let shift = vector(shift, -shift);
         let ring = turned(&cell(2.0, 0.01), angle, shift);
         let [middle, target] = [7, 9, 6, 8].map(|k| ring.points()[k])[corner..]
@@ -156,11 +149,7 @@ proptest! {
 #[test]
 fn no_agent_slips_through_joints_of_collinear_walls() {
     // Many short collinear walls at an odd angle, and agents that press against them while they slide along.
-    let none = Parameters {
-        wall_stiffness: Some(0.0),
-        wall_strength: Some(0.0),
-        ..Parameters::default()
-    };
+    let none = Parameters::of([("wall_stiffness", 0.0), ("wall_strength", 0.0)]).unwrap();
     for k in 0..40 {
         let angle = 0.1 + 0.15 * f64::from(k);
         let pieces = (0..60).map(|piece| f64::from(piece) * 0.1).map(|x| {
@@ -180,11 +169,9 @@ fn no_agent_slips_through_joints_of_collinear_walls() {
         }
         scene.groups[0].blend = blend_with(
             "sph",
-            &Parameters {
-                gas_constant: Some(0.0),
-                agent_stiffness: Some(0.0),
-                ..none
-            },
+            &Parameters::of([("gas_constant", 0.0), ("agent_stiffness", 0.0)])
+                .unwrap()
+                .or(&none),
         );
         let mut simulation = Simulation::new(scene).unwrap();
         for frame in 0..300 {

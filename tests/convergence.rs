@@ -35,14 +35,14 @@ fn smooth(parameters: &Parameters) -> Scene {
 
 /// Pressure and viscosity at a fixed rest density below the density of a lone agent.
 fn fixed() -> Parameters {
-    Parameters {
-        rest_density_min: Some(1.0),
-        rest_density_max: Some(1.0),
-        gas_constant: Some(20.0),
-        viscosity: Some(2.0),
-        agent_stiffness: Some(0.0),
-        ..Parameters::default()
-    }
+    Parameters::of([
+        ("rest_density_min", 1.0),
+        ("rest_density_max", 1.0),
+        ("gas_constant", 20.0),
+        ("viscosity", 2.0),
+        ("agent_stiffness", 0.0),
+    ])
+    .unwrap()
 }
 
 /// The positions of all agents after [`DURATION`], sorted by id.
@@ -103,11 +103,9 @@ fn errors_and_orders(parameters: &Parameters, towards: Option<f64>) -> [(Vec<f64
 
 /// The paper's rest density (§4.2), which follows the moving average.
 fn dynamic() -> Parameters {
-    Parameters {
-        rest_density_min: Some(0.0),
-        rest_density_max: Some(50.0),
-        ..fixed()
-    }
+    Parameters::of([("rest_density_min", 0.0), ("rest_density_max", 50.0)])
+        .unwrap()
+        .or(&fixed())
 }
 
 #[test]
@@ -134,11 +132,11 @@ fn the_pressure_switch_reduces_the_order_to_one_but_errors_stay_small() {
 
 #[test]
 fn viscosity_alone_has_order_two_with_velocity_verlet() {
-    let scene = smooth(&Parameters {
-        gas_constant: Some(0.0),
-        viscosity: Some(10.0),
-        ..fixed()
-    });
+    let scene = smooth(
+        &Parameters::of([("gas_constant", 0.0), ("viscosity", 10.0)])
+            .unwrap()
+            .or(&fixed()),
+    );
     for order in orders(&scene, Integrator::VelocityVerlet).1 {
         assert!((order - 2.0).abs() < 0.1, "{order}");
     }

@@ -108,10 +108,7 @@ fn density_and_forces_do_not_depend_on_the_wall_thickness() {
 
 #[test]
 fn a_pressing_crowd_stays_inside_and_agents_at_their_goal_are_removed() {
-    let parameters = Parameters {
-        goal_scale: Some(10.0),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("goal_scale", 10.0)]).unwrap();
     for profile in ["sph", "sf"] {
         let mut scene = scene(enclosed(), blend_with(profile, &parameters));
         scene.agents = crowd();

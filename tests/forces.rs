@@ -87,10 +87,7 @@ fn sum_of(simulation: &Simulation, term: Term) -> Vector {
 
 /// Two people whose rest densities lag behind, so that both have a positive pressure.
 fn pressing_pair(distance: f64, angle: f64, masses: [f64; 2], means: [f64; 2]) -> Scene {
-    let parameters = Parameters {
-        viscosity: Some(5.0),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("viscosity", 5.0)]).unwrap();
     let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
     let places = [Vector::zeros(), vector(angle.cos(), angle.sin()) * distance];
     scene.agents = (0..2)
@@ -153,7 +150,7 @@ proptest! {
     ) {
         let motion = Motion { angle, mirrored, shift: vector(x, y) };
         let obstacles = [room(3.0, 0.8), polygon(&[[1.0, 1.0], [1.6, 1.2], [1.1, 1.7]])];
-        let parameters = Parameters { viscosity: Some(5.0), ..Parameters::default() };
+        let parameters = Parameters::of([("viscosity", 5.0)]).unwrap();
         let agents: Vec<NewAgent> = crowd(40, 3.0)
             .into_iter()
             .filter(|agent| obstacles.iter().all(|o| !o.contains(agent.position)))
@@ -180,10 +177,7 @@ proptest! {
 
 /// Twelve people close together, all with a positive pressure; `common` is added to every velocity.
 fn pressing_crowd(common: Vector) -> Simulation {
-    let parameters = Parameters {
-        viscosity: Some(5.0),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("viscosity", 5.0)]).unwrap();
     let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
     scene.agents = crowd(12, 1.5);
     for agent in &mut scene.agents {

@@ -12,26 +12,29 @@ use sandbox::engine::pairs::Precision;
 use sandbox::engine::random::{Purpose, stream};
 use sandbox::engine::scene::Scene;
 use sandbox::engine::simulation::Simulation;
-use sandbox::scenario::catalog::{Parameters, WalkingLawKind};
+use sandbox::scenario::catalog::{self, Parameters, WalkingLawKind};
 
 fn parameters() -> Parameters {
-    Parameters {
-        walking_law: Some(WalkingLawKind::Headings),
-        headway_anticipation: Some(0.4),
-        ..Parameters::default()
-    }
+    Parameters::of([("headway_anticipation", 0.4)])
+        .unwrap()
+        .with("walking_law", "headings")
+        .unwrap()
 }
 
 /// With this preference for the right side, meters.
 fn evading(side_preference: f64) -> Parameters {
-    Parameters {
-        side_preference: Some(side_preference),
-        ..parameters()
-    }
+    Parameters::of([("side_preference", side_preference)])
+        .unwrap()
+        .or(&parameters())
 }
 
 fn law() -> Headings {
-    parameters().headings()
+    law_of(&parameters())
+}
+
+fn law_of(parameters: &Parameters) -> Headings {
+    let profile = catalog::plain("sph", parameters).unwrap();
+    *profile.walking.unwrap().headings().unwrap()
 }
 
 fn lone(agents: Vec<NewAgent>, walls: Vec<Polygon>) -> Scene {
@@ -81,7 +84,7 @@ fn agents_choose_the_heading_with_the_greatest_utility() {
     ];
     for (precision, exact, side) in cases {
         let parameters = evading(side);
-        let law = parameters.headings();
+        let law = law_of(&parameters);
         let (mut turned, mut all) = (0, 0);
         for seed in 0..10 {
             let mut scene = crowd(WalkingLawKind::Headings, seed);
@@ -246,10 +249,11 @@ fn a_fast_agent_overtakes_a_slow_one_and_with_the_headway_law_stays_behind() {
         lead_with > 0.9 * free && lead_with < free,
         "{lead_with} of {free}"
     );
-    let behind = lead(&Parameters {
-        walking_law: Some(WalkingLawKind::Headway),
-        ..Parameters::default()
-    });
+    let behind = lead(
+        &Parameters::default()
+            .with("walking_law", "headway")
+            .unwrap(),
+    );
     assert!(behind < 0.0, "{behind}");
 }
 
@@ -295,18 +299,19 @@ fn a_mirrored_crowd_chooses_mirrored_headings() {
 
 #[test]
 fn motivation_and_density_shorten_the_gap_and_narrowings_lengthen_it() {
-    let gap = Parameters {
-        hurry_share: Some(0.5),
-        press_share: Some(0.4),
-        press_density: Some(4.0),
-        press_range: Some(2.0),
-        queue_share: Some(0.2),
-        queue_density: Some(10.0),
-        narrowing_share: Some(0.6),
-        narrowing_range: Some(2.0),
-        ..parameters()
-    };
-    let gap = gap.headings().gap;
+    let gap = Parameters::of([
+        ("hurry_share", 0.5),
+        ("press_share", 0.4),
+        ("press_density", 4.0),
+        ("press_range", 2.0),
+        ("queue_share", 0.2),
+        ("queue_density", 10.0),
+        ("narrowing_share", 0.6),
+        ("narrowing_range", 2.0),
+    ])
+    .unwrap()
+    .or(&parameters());
+    let gap = law_of(&gap).gap;
     assert_eq!(gap.factor(0.0, 0.0, None), 1.0);
     assert_eq!(gap.factor(1.0, 0.0, None), 0.5);
     assert!((gap.factor(0.0, 9.0, None) - 0.6).abs() < 1e-12);
@@ -328,11 +333,9 @@ fn motivation_and_density_shorten_the_gap_and_narrowings_lengthen_it() {
     }
     // The agent behind another one walks faster if it hurries.
     let allowed = |motivation: f64| {
-        let all = Parameters {
-            hurry_share: Some(0.5),
-            heading_angle: Some(0.0),
-            ..parameters()
-        };
+        let all = Parameters::of([("hurry_share", 0.5), ("heading_angle", 0.0)])
+            .unwrap()
+            .or(&parameters());
         let mut scene = scene(vec![], blend_with("sph", &all));
         scene.groups[0].motivation = motivation;
         scene.agents = vec![

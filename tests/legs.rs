@@ -110,17 +110,18 @@ impl Law {
 #[test]
 fn the_law_agrees_with_an_independent_implementation() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
-    let parameters = Parameters {
-        unbalancing_rate: Some(0.7),
-        balancing_rate: Some(0.9),
-        balance_speed: Some(0.8),
-        legs_strength: Some(6.0),
-        body_range: Some(0.4),
-        leg_range: Some(0.25),
-        legs_reach: Some(1.3),
-        lean_limit: Some(0.2),
-        ..alone(0.6)
-    };
+    let parameters = Parameters::of([
+        ("unbalancing_rate", 0.7),
+        ("balancing_rate", 0.9),
+        ("balance_speed", 0.8),
+        ("legs_strength", 6.0),
+        ("body_range", 0.4),
+        ("leg_range", 0.25),
+        ("legs_reach", 1.3),
+        ("lean_limit", 0.2),
+    ])
+    .unwrap()
+    .or(&alone(0.6));
     let goal = vector(9.0, 1.0);
     let mut scene = scene(
         vec![rectangle(BLOCK[0], BLOCK[1])],
@@ -258,12 +259,13 @@ impl Force for Kick {
 #[test]
 fn a_lone_person_with_slow_legs_turns_at_the_frequency_of_the_closed_form() {
     let [falling, recovery, speed, friction] = [0.2, 0.3, 0.5, 0.5];
-    let parameters = Parameters {
-        unbalancing_rate: Some(falling),
-        balancing_rate: Some(recovery),
-        balance_speed: Some(speed),
-        ..alone(friction)
-    };
+    let parameters = Parameters::of([
+        ("unbalancing_rate", falling),
+        ("balancing_rate", recovery),
+        ("balance_speed", speed),
+    ])
+    .unwrap()
+    .or(&alone(friction));
     let agents = vec![walker(Vector::zeros(), vector(0.3, 0.0), Vector::zeros())];
     let mut scene = standing(parameters, agents);
     scene.clock = Clock::new(0.01, 1);
@@ -303,13 +305,14 @@ fn a_lone_person_with_slow_legs_turns_at_the_frequency_of_the_closed_form() {
 fn momentum_decays_with_the_friction_of_bodies_and_of_legs() {
     // Without a speed of balance, only frictions change the momentum. Legs begin with their bodies and repel each
     // other.
-    let parameters = Parameters {
-        balance_speed: Some(0.0),
-        unbalancing_rate: Some(0.3),
-        legs_strength: Some(0.2),
-        lean_limit: Some(2.0),
-        ..alone(0.0)
-    };
+    let parameters = Parameters::of([
+        ("balance_speed", 0.0),
+        ("unbalancing_rate", 0.3),
+        ("legs_strength", 0.2),
+        ("lean_limit", 2.0),
+    ])
+    .unwrap()
+    .or(&alone(0.0));
     let mut agents = block(Vector::zeros(), 7, 7, 0.4, vector(9.0, 0.0));
     for (k, agent) in agents.iter_mut().enumerate() {
         agent.velocity = vector(0.2, 0.1 * (k % 5) as f64);
@@ -347,10 +350,9 @@ fn momentum_decays_with_the_friction_of_bodies_and_of_legs() {
 fn a_lone_person_walks_upright_if_its_legs_are_fast_and_sways_if_they_are_slow() {
     // λᵤ (λᵤ + λ) = 1.25 1/s²: with λ_b² above that people do not sway, whether they stand or walk.
     let walked = |balancing_rate: f64| {
-        let parameters = Parameters {
-            balancing_rate: Some(balancing_rate),
-            ..alone(2.0)
-        };
+        let parameters = Parameters::of([("balancing_rate", balancing_rate)])
+            .unwrap()
+            .or(&alone(2.0));
         let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
         let mut walker = person(Vector::zeros(), vector(500.0, 0.0));
         walker.velocity = vector(1.3, 0.01);

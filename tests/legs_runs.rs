@@ -1,5 +1,6 @@
 //! Runs of crowds on legs: walls, threads, resumed runs, periodic scenes, breakdowns, measurements, errors.
 
+use sandbox::engine::density::SphParameters;
 use sandbox::engine::forces::legs::{self, lean};
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
@@ -16,12 +17,10 @@ use crate::common::{blend_with, block, breakdown, on_threads, room, run, scene, 
 
 /// A crowd in a room that presses to a corner, where it has no way out.
 fn pressed(integrator: Integrator, precision: Precision) -> Scene {
-    let parameters = Parameters {
-        legs: Some(true),
-        balance_speed: Some(0.5),
-        legs_reach: Some(1.0),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("balance_speed", 0.5), ("legs_reach", 1.0)])
+        .unwrap()
+        .with("legs", true)
+        .unwrap();
     let mut scene = scene(vec![room(9.0, 1.0)], blend_with("sph", &parameters));
     (scene.integrator, scene.precision) = (integrator, precision);
     scene.agents = block(vector(0.4, 0.4), 22, 22, 0.38, vector(9.5, 9.5));
@@ -89,10 +88,9 @@ fn a_crowd_without_legs_has_no_state_of_legs() {
 fn legs_come_along_across_the_ends_of_a_period() {
     let at = |from: f64| {
         let mut scene = standing(
-            Parameters {
-                legs_reach: Some(1.5),
-                ..alone(0.0)
-            },
+            Parameters::of([("legs_reach", 1.5)])
+                .unwrap()
+                .or(&alone(0.0)),
             block(vector(0.3, 0.0), 10, 4, 0.6, vector(9.0, 0.0)),
         );
         for (k, agent) in scene.agents.iter_mut().enumerate() {
@@ -151,13 +149,13 @@ fn the_terms_of_bodies_and_of_legs_add_up() {
 fn profiles_of_a_blend_share_their_legs() {
     let profile = |parameters: &Parameters| catalog::plain("sph", parameters).unwrap();
     let steps = [Parameters::default(), alone(1.0)].map(|parameters| BlendStep {
-        at_density: parameters.goal_scale.unwrap_or(3.0),
+        at_density: (parameters.get("goal_scale")).map_or(3.0, |scale| scale.as_f64().unwrap()),
         profile: profile(&parameters),
     });
     let [plain, with_legs] = steps;
     let blend = Blend::new(
         "b".to_owned(),
-        Parameters::default().sph(),
+        SphParameters::default(),
         vec![with_legs, plain],
     );
     assert_eq!(

@@ -78,11 +78,8 @@ fn a_pair_presses_with_equal_newtons_whatever_the_masses() {
 fn in_a_hexagonal_lattice_in_contact_the_stress_is_that_of_its_bonds() {
     // Bonds of length d that press with f make a pressure of √3 f/d in all directions.
     let (d, radius, stiffness) = (0.4, 0.24, 100.0);
-    let parameters = Parameters {
-        gas_constant: Some(0.0),
-        agent_stiffness: Some(stiffness),
-        ..Parameters::default()
-    };
+    let parameters =
+        Parameters::of([("gas_constant", 0.0), ("agent_stiffness", stiffness)]).unwrap();
     let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
     let rows = (-9_i32..=9).flat_map(|row| (-9_i32..=9).map(move |column| (column, row)));
     let places = rows.map(|(column, row)| {
@@ -171,10 +168,7 @@ fn the_measurement_of_a_wall_finds_the_steady_force_and_its_place() {
 
 /// People at rest in a room, denser than their rest density, some of them at walls and in a corner.
 fn crowd_at_rest() -> Simulation {
-    let parameters = Parameters {
-        gas_constant: Some(20.0),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("gas_constant", 20.0)]).unwrap();
     let mut scene = scene(vec![room(3.0, 0.8)], blend_with("sph", &parameters));
     for k in 0..36 {
         let jitter = vector(f64::from(k * 7 % 5), f64::from(k * 11 % 7)) * 0.01;

@@ -89,10 +89,7 @@ fn squares(count: usize, side: f64, span: f64, support_radius: f64) -> (Scene, f
         polygon(&[[x, y], [x + side, y], [x + side, y + side], [x, y + side]])
     };
     let solids = (0..count).map(square).collect();
-    let parameters = Parameters {
-        support_radius: Some(support_radius),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("support_radius", support_radius)]).unwrap();
     let scene = scene(solids, blend_with("sph", &parameters));
     let ranges = scene.ranges(&scene.needs(), &Agents::default());
     (scene, ranges.support + ranges.drift)

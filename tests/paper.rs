@@ -49,8 +49,9 @@ const STATES: u64 = 50;
 /// A state in the plain model, evaluated.
 fn plain_crowd(state: &Drawn) -> plain::Crowd {
     let mut behavior = plain::behavior(state.profile).unwrap();
-    behavior.viscosity = state.parameters.viscosity.unwrap();
-    behavior.rest_density_max = state.parameters.rest_density_max.unwrap();
+    let given = |name| state.parameters.get(name).and_then(Value::as_f64).unwrap();
+    behavior.viscosity = given("viscosity");
+    behavior.rest_density_max = given("rest_density_max");
     let around = |corners: &Vec<[f64; 2]>| plain::Wall::around(corners);
     let mut crowd = plain::Crowd {
         agents: agents_of(&state.simulation(Precision::Double)),

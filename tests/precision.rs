@@ -18,10 +18,7 @@ const BOUND: f64 = 1e-5;
 /// 300 people at random in a square with its lower left corner at `corner` and a side of 8 m × `stretch`. Some are
 /// a millimeter apart. The square has walls only at the origin and without stretching.
 fn crowd(corner: Vector, stretch: f64, seed: u64) -> Scene {
-    let parameters = Parameters {
-        viscosity: Some(5.0),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("viscosity", 5.0)]).unwrap();
     let mut scene = scene(vec![room(8.0, 1.0)], blend_with("sph", &parameters));
     if corner != Vector::zeros() || stretch != 1.0 {
         scene.walls = Scene::default().walls;

@@ -78,10 +78,7 @@ fn evaluated(state: &State) -> Simulation {
     let mut scene = Scene::with_obstacles(state.obstacles.iter().map(polygon).collect());
     scene.wall_method = state.wall_method;
     scene.precision = Precision::Double;
-    let parameters = Parameters {
-        viscosity: Some(state.viscosity),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("viscosity", state.viscosity)]).unwrap();
     let group = scene.add_group(Group {
         counted: false,
         ..Group::new("all", catalog::named(&state.profile, &parameters).unwrap())

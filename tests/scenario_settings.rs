@@ -1,6 +1,7 @@
 //! The documentation of settings agrees with the program.
 
 use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::density::SphParameters;
 use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::runs::summary::Summary;
 use sandbox::scenario::catalog::{self, NAMES, Parameters};
@@ -174,7 +175,11 @@ fn the_documented_defaults_of_parameters_are_those_of_the_engine() {
                 Ok(expected),
                 "{key} in {name}"
             );
-            assert_eq!(given.sph(), Parameters::default().sph(), "{key}");
+            assert_eq!(
+                given.part::<SphParameters>(),
+                SphParameters::default(),
+                "{key}"
+            );
         }
     }
 }

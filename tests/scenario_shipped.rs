@@ -119,11 +119,7 @@ fn the_concert_has_a_hundred_rows_of_a_hundred_people_and_a_push() {
         (100, Some(100), 1.0)
     );
     assert_eq!(rows.grid.jitter, 0.2);
-    let paper = Parameters {
-        viscosity: Some(5.0),
-        goal_scale: Some(0.1),
-        ..Parameters::default()
-    };
+    let paper = Parameters::of([("viscosity", 5.0), ("goal_scale", 0.1)]).unwrap();
     let group = &scenario.scene.groups[0];
     assert_eq!(Ok(group.blend.clone()), catalog::named("sph", &paper));
     assert_eq!(group.removal_radius, None);
@@ -208,10 +204,7 @@ fn a_blend_written_in_full_equals_the_named_blend() {
             {"at_density": 4, "profile": {"navigation": "goal", "name": "sph", "parameters": {"gas_constant": 100}}}
         ]}, "goal": [0, 0], "agents": [{"position": [1, 1]}]}"#,
     );
-    let softer = Parameters {
-        gas_constant: Some(100.0),
-        ..Parameters::default()
-    };
+    let softer = Parameters::of([("gas_constant", 100.0)]).unwrap();
     let blend = &scenario.scene.groups[0].blend;
     assert_eq!(Ok(blend.clone()), catalog::named("sf->sph", &softer));
     assert_eq!(scenario.profile_name, "sf->sph");
@@ -224,11 +217,7 @@ fn scenario_wide_parameters_override_those_of_profiles() {
             "parameters": {"viscosity": 2},
             "goal": [0, 0], "agents": [{"position": [1, 1]}]}"#,
     );
-    let expected = Parameters {
-        viscosity: Some(2.0),
-        goal_scale: Some(3.0),
-        ..Parameters::default()
-    };
+    let expected = Parameters::of([("viscosity", 2.0), ("goal_scale", 3.0)]).unwrap();
     let blend = scenario.scene.groups[0].blend.clone();
     assert_eq!(Ok(blend), catalog::named("sph", &expected));
 }

@@ -161,10 +161,7 @@ fn a_non_finite_state_is_reported_with_frame_agent_and_quantity() {
 
 #[test]
 fn a_run_that_blows_up_stops_before_any_agent_moves() {
-    let parameters = Parameters {
-        gas_constant: Some(1e308),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([("gas_constant", 1e308)]).unwrap();
     let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
     scene.agents = block(Vector::zeros(), 6, 6, 0.3, vector(9.0, 0.0));
     let mut simulation = Simulation::new(scene).unwrap();

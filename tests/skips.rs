@@ -101,17 +101,10 @@ fn needs_follow_from_the_profiles() {
 
 #[test]
 fn switched_off_terms_need_nothing() {
-    let none = Parameters {
-        gas_constant: Some(0.0),
-        agent_stiffness: Some(0.0),
-        ..Parameters::default()
-    };
+    let none = Parameters::of([("gas_constant", 0.0), ("agent_stiffness", 0.0)]).unwrap();
     let needs = *crowd(blend_with("sph", &none)).needs();
     assert!(!needs.density && !needs.pairs.contact && needs.avoidance.is_none());
-    let viscous = Parameters {
-        viscosity: Some(5.0),
-        ..none
-    };
+    let viscous = Parameters::of([("viscosity", 5.0)]).unwrap().or(&none);
     assert!(crowd(blend_with("sph", &viscous)).needs().density);
 }
 
@@ -131,11 +124,7 @@ fn scenes_without_removal_skip_the_search_for_arrivals() {
 
 #[test]
 fn agents_without_forces_still_walk() {
-    let none = Parameters {
-        gas_constant: Some(0.0),
-        agent_stiffness: Some(0.0),
-        ..Parameters::default()
-    };
+    let none = Parameters::of([("gas_constant", 0.0), ("agent_stiffness", 0.0)]).unwrap();
     let mut simulation = crowd(blend_with("sph", &none));
     for _ in 0..50 {
         simulation.step().unwrap();

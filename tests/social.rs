@@ -151,7 +151,7 @@ proptest! {
         slowness in 1.0..50.0_f64,
     ) {
         let tolerance = 1e-3;
-        let parameters = Parameters { avoidance_tolerance: Some(tolerance), ..Parameters::default() };
+        let parameters = Parameters::of([("avoidance_tolerance", tolerance)]).unwrap();
         let mut scene = crowd(vector(0.0, 0.0), side, seed, &parameters);
         for agent in &mut scene.agents {
             agent.velocity /= slowness;
@@ -174,10 +174,7 @@ proptest! {
 #[test]
 fn long_anticipation_times_agree_with_the_equation() {
     for anticipation_time in [20.0, 100.0, 1000.0] {
-        let parameters = Parameters {
-            anticipation_time: Some(anticipation_time),
-            ..Parameters::default()
-        };
+        let parameters = Parameters::of([("anticipation_time", anticipation_time)]).unwrap();
         let social = SocialForce {
             anticipation_time,
             ..SocialForce::default()
@@ -204,10 +201,7 @@ fn long_anticipation_times_agree_with_the_equation() {
 #[test]
 fn a_tolerance_omits_forces_and_mixed_precision_differs_from_double() {
     let still = |tolerance| {
-        let parameters = Parameters {
-            avoidance_tolerance: Some(tolerance),
-            ..Parameters::default()
-        };
+        let parameters = Parameters::of([("avoidance_tolerance", tolerance)]).unwrap();
         let mut scene = crowd(vector(0.0, 0.0), 15.0, 3, &parameters);
         for agent in &mut scene.agents {
             agent.velocity = Vector::zeros();
@@ -255,10 +249,7 @@ fn coincident_agents_exert_no_force() {
 
 #[test]
 fn each_group_uses_its_own_parameters() {
-    let strong = Parameters {
-        agent_strength: Some(4.2),
-        ..Parameters::default()
-    };
+    let strong = Parameters::of([("agent_strength", 4.2)]).unwrap();
     let mut scene = scene(vec![], blend("sf"));
     let group = scene.add_group(Group::new("strong", blend_with("sf", &strong)));
     scene.agents = vec![

@@ -21,10 +21,7 @@ fn random(seed: u64) -> impl FnMut() -> f64 {
 
 /// Social forces with the tolerance.
 fn tolerant() -> Parameters {
-    Parameters {
-        avoidance_tolerance: Some(TOLERANCE),
-        ..Parameters::default()
-    }
+    Parameters::of([("avoidance_tolerance", TOLERANCE)]).unwrap()
 }
 
 /// The acceleration of each agent by social forces with these parameters, as computed by the engine.
@@ -81,11 +78,12 @@ fn pairs_that_are_left_out_have_forces_below_the_tolerance() {
 #[test]
 fn far_anticipation_leaves_out_no_pair_above_the_tolerance() {
     for avoidance_radius in [5.0, 50.0] {
-        let parameters = Parameters {
-            anticipation_time: Some(60.0),
-            avoidance_radius: Some(avoidance_radius),
-            ..tolerant()
-        };
+        let parameters = Parameters::of([
+            ("anticipation_time", 60.0),
+            ("avoidance_radius", avoidance_radius),
+        ])
+        .unwrap()
+        .or(&tolerant());
         let social = SocialForce {
             anticipation_time: 60.0,
             avoidance_radius,

@@ -135,11 +135,11 @@ fn displaced(lattice: &Lattice, q: f64, amplitude: f64) -> Vec<NewAgent> {
 
 /// ω² from the engine: −∂a/∂u of the middle agent.
 fn frequency_squared(lattice: &Lattice, q: f64) -> f64 {
-    let parameters = Parameters {
-        gas_constant: Some(lattice.sph.gas_constant),
-        agent_stiffness: Some(lattice.agent_stiffness),
-        ..Parameters::default()
-    };
+    let parameters = Parameters::of([
+        ("gas_constant", lattice.sph.gas_constant),
+        ("agent_stiffness", lattice.agent_stiffness),
+    ])
+    .unwrap();
     let at = |amplitude: f64| {
         let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
         scene.agents = displaced(lattice, q, amplitude);

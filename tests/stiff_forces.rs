@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::common::walking::with;
 use crate::common::{
     blend, blend_with, block, breakdown, evaluated, person, rectangle, run, scene, vector,
 };
@@ -80,22 +81,23 @@ fn an_agent_on_a_stiff_rail_walks_steadily_with_the_automatic_step_and_shakes_wi
     }
 }
 
+const MUCH: f64 = 1e3;
+const MORE: f64 = 1e6;
+
 /// Stiff parameters of a term; none if no parameter changes how fast it acts.
 fn stiff(term: Term) -> Vec<Parameters> {
-    let mut all = Parameters::default();
-    let [much, more] = [Some(1e3), Some(1e6)];
-    match term {
-        Term::Goal => all.goal_scale = much,
+    let stiff = match term {
+        Term::Goal => ("goal_scale", MUCH),
         Term::Walking => return laws().into_iter().map(walking).collect(),
-        Term::SocialAgents => all.agent_strength = more,
-        Term::SocialWalls => all.wall_strength = more,
+        Term::SocialAgents => ("agent_strength", MORE),
+        Term::SocialWalls => ("wall_strength", MORE),
         Term::Rvo => return Vec::new(),
-        Term::PressureAgents | Term::PressureWalls => all.gas_constant = more,
-        Term::Viscosity => all.viscosity = much,
-        Term::ContactAgents => all.agent_stiffness = more,
-        Term::ContactWalls => all.wall_stiffness = more,
-    }
-    vec![all]
+        Term::PressureAgents | Term::PressureWalls => ("gas_constant", MORE),
+        Term::Viscosity => ("viscosity", MUCH),
+        Term::ContactAgents => ("agent_stiffness", MORE),
+        Term::ContactWalls => ("wall_stiffness", MORE),
+    };
+    vec![Parameters::of([stiff]).unwrap()]
 }
 
 /// All walking laws: those that scenarios can name.
@@ -111,17 +113,13 @@ fn laws() -> Vec<WalkingLawKind> {
 
 /// A walking law that brakes much sooner than by default.
 fn walking(law: WalkingLawKind) -> Parameters {
-    let mut all = Parameters {
-        walking_law: Some(law),
-        ..Parameters::default()
+    let stiff = match law {
+        WalkingLawKind::None => return Parameters::default(),
+        WalkingLawKind::Headway | WalkingLawKind::Headings => ("headway_time", 0.01),
+        WalkingLawKind::DensityAhead => ("jam_density", 0.01),
+        WalkingLawKind::Drag => ("drag_per_density", MUCH),
     };
-    match law {
-        WalkingLawKind::None => {}
-        WalkingLawKind::Headway | WalkingLawKind::Headings => all.headway_time = Some(0.01),
-        WalkingLawKind::DensityAhead => all.jam_density = Some(0.01),
-        WalkingLawKind::Drag => all.drag_per_density = Some(1e3),
-    }
-    all
+    with(law).or(&Parameters::of([stiff]).unwrap())
 }
 
 /// The automatic step of one agent with this profile, seconds.
@@ -139,19 +137,14 @@ fn every_stiff_force_that_is_not_in_the_paper_shortens_the_automatic_step() {
     let switches = switches.filter(|(_, property)| property["type"][0] == "boolean");
     let switches: Vec<&String> = switches.map(|(name, _)| name).collect();
     assert_eq!(switches, ["legs"]);
-    let [much, more] = [Some(1e3), Some(1e6)];
+    let legs = |stiff| {
+        let parameters = Parameters::of([stiff]).unwrap();
+        parameters.with("legs", true).unwrap()
+    };
     let all = [
         walking(WalkingLawKind::Drag),
-        Parameters {
-            legs: Some(true),
-            unbalancing_rate: much,
-            ..Parameters::default()
-        },
-        Parameters {
-            legs: Some(true),
-            legs_strength: more,
-            ..Parameters::default()
-        },
+        legs(("unbalancing_rate", MUCH)),
+        legs(("legs_strength", MORE)),
     ];
     for parameters in all {
         let [soft, stiff] = [&Parameters::default(), &parameters].map(|of| step("sph", of));

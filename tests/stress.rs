@@ -264,12 +264,12 @@ fn an_agent_that_passes_through_a_wall_is_found() {
 #[test]
 fn a_fault_gives_the_breakdown_of_its_agent() {
     for profile in ["sph", "sf", "rvo->sph"] {
-        let huge = Parameters {
-            gas_constant: Some(1e308),
-            agent_stiffness: Some(1e308),
-            wall_stiffness: Some(1e308),
-            ..Parameters::default()
-        };
+        let huge = Parameters::of([
+            ("gas_constant", 1e308),
+            ("agent_stiffness", 1e308),
+            ("wall_stiffness", 1e308),
+        ])
+        .unwrap();
         let mut scene = scene(
             vec![rectangle([2.1, 3.0], [0.0, 9.0])],
             blend_with(profile, &huge),

@@ -188,12 +188,13 @@ fn weidmanns_speed_is_free_without_a_crowd_and_zero_in_a_jam() {
 
 #[test]
 fn a_single_file_keeps_the_distance_of_its_speed() {
-    let parameters = Parameters {
-        headway_time: Some(0.8),
-        agent_stiffness: Some(0.0),
-        gas_constant: Some(0.0),
-        ..with(WalkingLawKind::Headway)
-    };
+    let parameters = Parameters::of([
+        ("headway_time", 0.8),
+        ("agent_stiffness", 0.0),
+        ("gas_constant", 0.0),
+    ])
+    .unwrap()
+    .or(&with(WalkingLawKind::Headway));
     for speed in [0.2, 0.5] {
         let mut scene = scene(vec![], blend_with("sph", &parameters));
         scene.max_speed_ratio = None;
@@ -272,10 +273,9 @@ fn a_push_strengthens_the_law_like_the_goal_force() {
 
 #[test]
 fn drag_has_the_terminal_speed_of_its_equation() {
-    let parameters = Parameters {
-        drag_from_density: Some(0.5),
-        ..with(WalkingLawKind::Drag)
-    };
+    let parameters = Parameters::of([("drag_from_density", 0.5)])
+        .unwrap()
+        .or(&with(WalkingLawKind::Drag));
     let mut scene = scene(vec![], blend_with("sph", &parameters));
     let goal = vector(1000.0, 0.0);
     scene.agents = vec![walker(Vector::zeros(), vector(1.0, 0.0), goal)];

@@ -6,6 +6,7 @@ use crate::common::{
     vector, walker,
 };
 use sandbox::engine::agents::NewAgent;
+use sandbox::engine::density::SphParameters;
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
 use sandbox::engine::profile::Term;
@@ -50,7 +51,7 @@ fn the_law_adds_to_the_goal_force_what_lowers_its_speed() {
 fn a_blend_with_and_without_a_law_interpolates() {
     let [lawless, lawful] = [Parameters::default(), with(WalkingLawKind::Headway)];
     let steps = vec![step(0.0, &lawless), step(20.0, &lawful)];
-    let both = Blend::new("both".to_owned(), lawless.sph(), steps).unwrap();
+    let both = Blend::new("both".to_owned(), lawless.part(), steps).unwrap();
     let simulated = |blend: Blend| {
         let mut scene = crowd(WalkingLawKind::Headway, 6);
         scene.groups = vec![Group::new("all", blend)];
@@ -100,7 +101,7 @@ fn profiles_with_rvo_share_their_law_in_a_blend() {
     };
     let made = |laws: [WalkingLawKind; 2]| {
         let steps = vec![rvo(laws[0], 1.0), rvo(laws[1], 2.0)];
-        Blend::new("both".to_owned(), Parameters::default().sph(), steps)
+        Blend::new("both".to_owned(), SphParameters::default(), steps)
     };
     assert!(made([WalkingLawKind::Headway; 2]).is_ok());
     let error = made([WalkingLawKind::Headway, WalkingLawKind::None]).unwrap_err();
@@ -109,11 +110,10 @@ fn profiles_with_rvo_share_their_law_in_a_blend() {
 
 #[test]
 fn profiles_of_a_blend_share_the_law_that_looks_ahead() {
-    let made = |steps| Blend::new("both".to_owned(), Parameters::default().sph(), steps);
-    let other = Parameters {
-        headway_time: Some(0.9),
-        ..with(WalkingLawKind::Headway)
-    };
+    let made = |steps| Blend::new("both".to_owned(), SphParameters::default(), steps);
+    let other = Parameters::of([("headway_time", 0.9)])
+        .unwrap()
+        .or(&with(WalkingLawKind::Headway));
     let headway = || step(1.0, &with(WalkingLawKind::Headway));
     let drag = step(2.0, &with(WalkingLawKind::Drag));
     let error = made(vec![headway(), step(2.0, &other)]).unwrap_err();
@@ -190,14 +190,16 @@ fn steep_laws_and_strong_drag_shorten_the_automatic_time_step() {
         time_step(&scene).unwrap()
     };
     let free = step(&Parameters::default());
-    let steep = step(&Parameters {
-        headway_time: Some(0.01),
-        ..with(WalkingLawKind::Headway)
-    });
-    let rough = step(&Parameters {
-        drag_per_density: Some(10.0),
-        ..with(WalkingLawKind::Drag)
-    });
+    let steep = step(
+        &Parameters::of([("headway_time", 0.01)])
+            .unwrap()
+            .or(&with(WalkingLawKind::Headway)),
+    );
+    let rough = step(
+        &Parameters::of([("drag_per_density", 10.0)])
+            .unwrap()
+            .or(&with(WalkingLawKind::Drag)),
+    );
     assert!(steep < 0.9 * free && steep > 0.2 * free, "{steep} {free}");
     assert!(rough < 0.9 * free && rough > 0.2 * free, "{rough} {free}");
     let default = step(&with(WalkingLawKind::Headway));

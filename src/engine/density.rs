@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::agents::Agents;
 use crate::boundary::WallMethod;
@@ -23,8 +24,8 @@ use crate::pairs::{
 };
 
 /// Parameters of SPH density and pressure, shared by all profiles of a blend.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
-#[schemars(default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct SphParameters {
     /// h (§5.2), meters: the support radius of the SPH kernels. Larger: smoother densities, at a cost that grows with
     /// its square. At 0.5 m an agent has four neighbors at 5 P/m², too few for a density.

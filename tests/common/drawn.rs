@@ -23,11 +23,11 @@ pub struct Drawn {
 impl Drawn {
     pub fn new(profile: &'static str, seed: u64) -> Self {
         let rng = &mut ChaCha8Rng::seed_from_u64(seed);
-        let parameters = Parameters {
-            viscosity: Some(if rng.random() { 5.0 } else { 0.0 }),
-            rest_density_max: Some(rng.random_range(2.0..8.0)),
-            ..Parameters::default()
-        };
+        let parameters = Parameters::of([
+            ("viscosity", if rng.random() { 5.0 } else { 0.0 }),
+            ("rest_density_max", rng.random_range(2.0..8.0)),
+        ])
+        .unwrap();
         let boxes = rng.random_range(1..5);
         let obstacles: Vec<_> = match rng.random_range(0..4) {
             0 => Vec::new(),

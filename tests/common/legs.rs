@@ -8,15 +8,16 @@ use crate::common::{blend_with, scene};
 
 /// People who stand on legs; nothing else acts on them but their own friction λ.
 pub fn alone(friction: f64) -> Parameters {
-    Parameters {
-        legs: Some(true),
-        gas_constant: Some(0.0),
-        agent_stiffness: Some(0.0),
-        wall_stiffness: Some(0.0),
-        goal_scale: Some(friction),
-        relaxation_time: Some(1.0),
-        ..Parameters::default()
-    }
+    Parameters::of([
+        ("gas_constant", 0.0),
+        ("agent_stiffness", 0.0),
+        ("wall_stiffness", 0.0),
+        ("goal_scale", friction),
+        ("relaxation_time", 1.0),
+    ])
+    .unwrap()
+    .with("legs", true)
+    .unwrap()
 }
 
 /// A crowd that wants to stand still.

@@ -9,6 +9,7 @@ use sandbox::engine::random::{Purpose, stream};
 use sandbox::engine::scene::Scene;
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::{Parameters, WalkingLawKind};
+use serde_json::json;
 
 use super::{blend_with, breakdown, scene, vector};
 
@@ -16,10 +17,9 @@ use super::{blend_with, breakdown, scene, vector};
 pub const LOOKING: [WalkingLawKind; 2] = [WalkingLawKind::Headway, WalkingLawKind::DensityAhead];
 
 pub fn with(law: WalkingLawKind) -> Parameters {
-    Parameters {
-        walking_law: Some(law),
-        ..Parameters::default()
-    }
+    Parameters::default()
+        .with("walking_law", json!(law))
+        .unwrap()
 }
 
 /// A headway law with anticipation.
@@ -34,10 +34,10 @@ pub fn anticipating() -> Headway {
 pub fn crowd(law: WalkingLawKind, seed: u64) -> Scene {
     let mut rng = stream(seed, Purpose::Placement, 0, 0);
     let mut random = move |size: f64| rng.random_range(-size..size);
-    let parameters = Parameters {
-        headway_anticipation: Some(anticipating().headway_anticipation),
-        ..with(law)
-    };
+    let parameters =
+        Parameters::of([("headway_anticipation", anticipating().headway_anticipation)])
+            .unwrap()
+            .or(&with(law));
     let mut scene = scene(vec![], blend_with("sph", &parameters));
     for k in 0..300 {
         let position = vector(random(5.0), random(5.0));

@@ -45,7 +45,7 @@ pub fn settings(others: &[Setting], all: usize) -> Result<Vec<Setting>, LabError
 
 fn own_crowd(agents: u32, profile: &'static str, radius: f64) -> Crowd {
     let mut crowd = crowd(agents, profile);
-    crowd.parameters.avoidance_radius = Some(radius);
+    crowd.parameters.push(("avoidance_radius", radius));
     crowd
 }
 
@@ -57,6 +57,9 @@ fn setting(
     all_sizes: bool,
 ) -> Result<Setting, LabError> {
     let scene = one.scene()?;
+    let mut parameters = one.parameters.iter();
+    let radius = parameters.find(|(name, _)| *name == "avoidance_radius");
+    let radius = radius.map_or(WIDE, |&(_, radius)| radius);
     let description = Description {
         engine: "sandbox".to_owned(),
         family,
@@ -64,7 +67,7 @@ fn setting(
             Family::SocialForce => "social force, elliptical",
             _ => "RVO, 250 candidates",
         },
-        radius: one.parameters.avoidance_radius.unwrap_or(WIDE),
+        radius,
         precision: match scene.precision {
             Precision::Double => "f64",
             Precision::Mixed => "mixed",

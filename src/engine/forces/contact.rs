@@ -9,6 +9,7 @@
 use std::ops::Range;
 
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::forces::rates::{Extremes, Rates};
 use crate::frame::Frame;
@@ -22,7 +23,8 @@ use crate::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, 
 const ON_THE_WALL: f64 = 1e-9;
 
 /// Contact in one profile; a stiffness `None` disables it.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Contact {
     /// K^ag (Eq. 22), 1/s²: the stiffness of contacts between agents. Higher: agents overlap less; 0: no contact
     /// force. Above about 2000 the paper's time step is too long. Default: 1000; with SPH 50.
@@ -34,11 +36,23 @@ pub struct Contact {
     pub wall_stiffness: Option<f64>,
     /// The part of D_i that counts in contacts between agents. Smaller: shoulders turn, crowds get denser before
     /// overlaps push. Masses, entrances and avoidance keep D_i.
-    #[schemars(range(min = 0.1, max = 1), extend("default" = 1))]
+    #[schemars(range(min = 0.1, max = 1))]
     pub contact_scale: f64,
     /// The part of D_i that counts in contacts with walls. Smaller: more room in narrow doors and corridors.
-    #[schemars(range(min = 0.1, max = 1), extend("default" = 1))]
+    #[schemars(range(min = 0.1, max = 1))]
     pub wall_contact_scale: f64,
+}
+
+impl Default for Contact {
+    /// No contact forces, with the whole radius.
+    fn default() -> Self {
+        Self {
+            agent_stiffness: None,
+            wall_stiffness: None,
+            contact_scale: 1.0,
+            wall_contact_scale: 1.0,
+        }
+    }
 }
 
 /// Both edges of a corner push an agent in front of it in the same direction.

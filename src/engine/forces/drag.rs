@@ -8,6 +8,7 @@
 use std::any::Any;
 
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::own::Force;
 use super::rates::{Extremes, Rates};
@@ -16,8 +17,8 @@ use crate::limits::{HIGHEST_DENSITY, STRONGEST};
 use crate::math::Vector;
 
 /// Parameters of the drag.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
-#[schemars(default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Drag {
     /// γ₀ (`drag`), m²/s: the friction per density above `drag_from_density`. Higher: slower crowds.
     #[schemars(range(min = 0, max = STRONGEST))]

@@ -5,6 +5,7 @@
 use std::ops::Range;
 
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::forces::rates::{Extremes, Rates};
 use crate::frame::Frame;
@@ -14,8 +15,8 @@ use crate::neighbors::BLOCK;
 use crate::pairs::{Level, dispatch};
 
 /// Parameters of Eq. 17.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
-#[schemars(default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct GoalForce {
     /// K^goal (Eq. 17): the strength of the goal force. Higher: agents push harder toward their goals. Above about 40
     /// the paper's time step is too long.

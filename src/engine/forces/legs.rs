@@ -25,6 +25,7 @@ use std::any::Any;
 use std::sync::Arc;
 
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::own::{Body, Force, Kept, Step};
 use super::rates::{Extremes, Rates};
@@ -36,8 +37,8 @@ use crate::math::{Vector, clamp_length, direction};
 use crate::period::Axis;
 
 /// Parameters of the law.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
-#[schemars(default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Legs {
     /// λᵤ (`legs`), 1/s: the rate at which a body falls where it leans. Higher: people fall and sway faster.
     #[schemars(range(min = 0, max = STRONGEST))]

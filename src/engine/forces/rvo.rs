@@ -17,6 +17,7 @@ use candidates::Draws;
 use surroundings::Around;
 
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::clock::PAPER_COARSE_STEP;
 use crate::forces::rates::Rates;
@@ -27,8 +28,8 @@ use crate::math::Vector;
 use crate::random::{self, Purpose};
 
 /// Parameters of Eq. 20 and of its sampling.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
-#[schemars(default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Rvo {
     /// w (Eq. 20), meters: the weight of the time to collision in RVO. Higher: agents avoid collisions earlier, with
     /// larger detours; 0: they do not avoid them.
@@ -39,7 +40,7 @@ pub struct Rvo {
     #[schemars(range(min = 1, max = 1e6))]
     pub candidates: u32,
     /// As [`SocialForce::avoidance_radius`](super::social::SocialForce::avoidance_radius), meters.
-    #[schemars(skip)]
+    #[serde(skip)]
     pub avoidance_radius: f64,
 }
 

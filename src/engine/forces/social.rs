@@ -17,6 +17,7 @@ use cutoff::Cutoff;
 use near::Near;
 
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::forces::rates::{Extremes, Rates};
 use crate::frame::Frame;
@@ -26,8 +27,8 @@ use crate::neighbors::{BLOCK, Run};
 use crate::pairs::{Bodies, Level, Real, Simd, dispatch, each};
 
 /// Parameters of Eqs. 18 and 19 and of the field of view.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
-#[schemars(default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct SocialForce {
     /// V₀ (Eq. 18), m²/s²: the strength of the social force between agents. Higher: they keep more distance; 0: none.
     /// V₀/σ² acts like a stiffness and limits the time step like `agent_stiffness`.

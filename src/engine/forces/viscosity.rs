@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::forces::rates::Rates;
 use crate::frame::Frame;
@@ -14,11 +15,13 @@ use crate::pairs::prelude::*;
 use crate::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, splat};
 
 /// The viscosity force of one profile.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Viscosity {
     /// μ (Eq. 2), 1/s: the viscosity. Higher: neighbors move together, and a crowd calms down sooner after a push;
     /// 0: none. Above about 40 the paper's time step is too long.
-    #[schemars(rename = "viscosity", range(min = 0, max = STRONGEST), extend("default" = 0))]
+    #[serde(rename = "viscosity")]
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub coefficient: f64,
 }
 

@@ -86,8 +86,8 @@ impl Simulation {
                 let each = rates.par_chunks_mut(width).with_min_len(TASK * BLOCK);
                 each.enumerate().for_each(|(i, rates)| {
                     let force = self.fixed.force(agents, i, &states.force);
-                    if let Some(force) = force {
-                        force.change(&frame, i, rates);
+                    if let (Some(force), Some(state)) = (force, states.of(i)) {
+                        force.change(&frame, i, state, rates);
                     }
                 });
             });

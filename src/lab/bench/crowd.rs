@@ -35,7 +35,7 @@ pub struct Crowd {
     /// The name of one of the paper's profiles.
     pub profile: &'static str,
     /// Changes to the profile's parameters.
-    pub parameters: Parameters,
+    pub parameters: Vec<(&'static str, f64)>,
     /// Where they want to go.
     pub way: Way,
 }
@@ -49,11 +49,7 @@ impl Crowd {
             agents,
             density: 5.0,
             profile: "sph",
-            parameters: Parameters {
-                viscosity: Some(5.0),
-                goal_scale: Some(0.1),
-                ..Parameters::default()
-            },
+            parameters: vec![("viscosity", 5.0), ("goal_scale", 0.1)],
             way: Way::Stay,
         }
     }
@@ -64,7 +60,7 @@ impl Crowd {
             agents,
             density: 4.0,
             profile,
-            parameters: Parameters::default(),
+            parameters: Vec::new(),
             way: Way::Both,
         }
     }
@@ -75,7 +71,7 @@ impl Crowd {
             agents,
             density,
             profile,
-            parameters: Parameters::default(),
+            parameters: Vec::new(),
             way: Way::Right,
         }
     }
@@ -83,9 +79,11 @@ impl Crowd {
     /// The scene before the first frame.
     ///
     /// # Errors
-    /// The profile does not exist.
+    /// The profile or a parameter does not exist.
     pub fn scene(&self) -> Result<Scene, LabError> {
-        let found = catalog::named(self.profile, &self.parameters);
+        let parameters = Parameters::of(self.parameters.iter().copied());
+        let parameters = parameters.map_err(|error| LabError::Data(error.to_string()))?;
+        let found = catalog::named(self.profile, &parameters);
         let blend = found.map_err(|error| LabError::Data(error.to_string()))?;
         let mut scene = Scene::default();
         let group = scene.add_group(Group {

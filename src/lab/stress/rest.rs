@@ -205,20 +205,18 @@ impl Rest {
         [FILLING * self.rest_density_max, LOOSE]
     }
 
+    /// The parameters of the profile.
+    ///
+    /// # Panics
+    /// One of the fields of this struct is no parameter.
+    fn parameters(&self) -> Parameters {
+        let fields = Parameters::deserialize(json!(self));
+        fields.unwrap_or_else(|error| panic!("{self:?}: {error}"))
+    }
+
     /// A room with its agents at `density` P/m², for a time step in seconds.
     pub fn scene(&self, density: f64, time_step: f64) -> Scene {
-        let parameters = Parameters {
-            gas_constant: Some(self.gas_constant),
-            rest_density_max: Some(self.rest_density_max),
-            agent_stiffness: Some(self.agent_stiffness),
-            viscosity: Some(self.viscosity),
-            walking_law: self.law.walking_law,
-            headway_time: self.law.headway_time,
-            headway_anticipation: self.law.headway_anticipation,
-            slowing_density: self.law.slowing_density,
-            drag_per_density: self.law.drag_per_density,
-            ..Parameters::default()
-        };
+        let parameters = self.parameters();
         let walks = self.law.walking_law.is_some();
         let spacing = (1.0 / density).sqrt();
         let side = f64::from(COLUMNS) * spacing;
@@ -237,7 +235,7 @@ impl Rest {
         let group = scene.add_group(Group {
             counted: false,
             direction: walks.then(Vector::x),
-            ..Group::new("crowd", Blend::single(profile, parameters.sph()))
+            ..Group::new("crowd", Blend::single(profile, parameters.part()))
         });
         let grid = Grid {
             min: Vector::zeros(),

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-pub use super::parameters::{NavigationKind, Parameters, SPH, WalkingLawKind};
+pub use super::parameters::{NavigationKind, Parameters, WalkingLawKind};
 
 use crate::error::{quote::shown, suggestion};
-use crate::keys::calibrated;
-use engine::forces::contact::Contact;
-use engine::forces::viscosity::Viscosity;
-use engine::forces::walking::WalkingLaw;
+use crate::keys::{calibrated, parameters::Walking};
+use engine::density::SphParameters;
+use engine::forces::walking::{Headings, WalkingLaw};
+use engine::forces::{contact::Contact, drag::Drag, rvo::Rvo};
+use engine::forces::{social::SocialForce, viscosity::Viscosity};
 use engine::profile::{Blend, BlendError, BlendStep, Navigation, Profile};
 
 /// The names of §5.5.
@@ -34,12 +35,16 @@ pub const ALIASES: [(&str, &str); 2] = [("sf-sph", "sf->sph"), ("rvo-sph", "rvo-
 const BLEND_DENSITIES: [f64; 2] = [2.0, 4.0];
 
 impl Parameters {
-    fn walking(&self) -> Option<WalkingLaw> {
-        match self.walking_law? {
+    fn walking(&self, kind: WalkingLawKind) -> Option<WalkingLaw> {
+        match kind {
             WalkingLawKind::None | WalkingLawKind::Drag => None,
-            WalkingLawKind::Headway => Some(WalkingLaw::Headway(self.headway())),
-            WalkingLawKind::DensityAhead => Some(WalkingLaw::DensityAhead(self.density_ahead())),
-            WalkingLawKind::Headings => Some(WalkingLaw::Headings(self.headings())),
+            WalkingLawKind::Headway => Some(WalkingLaw::Headway(self.part())),
+            WalkingLawKind::DensityAhead => Some(WalkingLaw::DensityAhead(self.part())),
+            WalkingLawKind::Headings => Some(WalkingLaw::Headings(Headings {
+                headway: self.part(),
+                gap: self.part(),
+                ..self.part()
+            })),
         }
     }
 
@@ -47,27 +52,29 @@ impl Parameters {
     pub fn profile(&self, name: &str, kind: NavigationKind, sph: bool) -> Profile {
         let switch = |value: f64| (value != 0.0).then_some(value);
         let (agent_stiffness, wall_stiffness) = if sph { (50.0, 200.0) } else { (1000.0, 1000.0) };
+        let (contact, viscosity): (Contact, Viscosity) = (self.part(), self.part());
+        let Walking { walking_law } = self.part();
         let mut forces = self.forces();
-        if self.walking_law == Some(WalkingLawKind::Drag) {
-            forces.push(Arc::new(self.drag()));
+        if walking_law == WalkingLawKind::Drag {
+            forces.push(Arc::new(self.part::<Drag>()));
         }
         Profile {
             name: name.to_owned(),
             navigation: match kind {
-                NavigationKind::Goal => Navigation::Goal(self.goal()),
-                NavigationKind::Social => Navigation::Social(self.goal(), self.social()),
-                NavigationKind::Rvo => Navigation::Rvo(self.rvo()),
+                NavigationKind::Goal => Navigation::Goal(self.part()),
+                NavigationKind::Social => Navigation::Social(self.part(), self.part()),
+                NavigationKind::Rvo => Navigation::Rvo(Rvo {
+                    avoidance_radius: self.part::<SocialForce>().avoidance_radius,
+                    ..self.part()
+                }),
             },
-            walking: self.walking(),
-            pressure: sph && self.sph().gas_constant != 0.0,
-            viscosity: switch(self.viscosity.unwrap_or(0.0))
-                .filter(|_| sph)
-                .map(|coefficient| Viscosity { coefficient }),
+            walking: self.walking(walking_law),
+            pressure: sph && self.part::<SphParameters>().gas_constant != 0.0,
+            viscosity: (sph && viscosity.coefficient != 0.0).then_some(viscosity),
             contact: Contact {
-                agent_stiffness: switch(self.agent_stiffness.unwrap_or(agent_stiffness)),
-                wall_stiffness: switch(self.wall_stiffness.unwrap_or(wall_stiffness)),
-                contact_scale: self.contact_scale.unwrap_or(1.0),
-                wall_contact_scale: self.wall_contact_scale.unwrap_or(1.0),
+                agent_stiffness: switch(contact.agent_stiffness.unwrap_or(agent_stiffness)),
+                wall_stiffness: switch(contact.wall_stiffness.unwrap_or(wall_stiffness)),
+                ..contact
             },
             forces,
         }
@@ -85,7 +92,7 @@ pub fn names() -> Vec<&'static str> {
 pub fn resolved<'a>(name: &'a str, parameters: &Parameters) -> (&'a str, Parameters) {
     match calibrated::named(name) {
         Some(profile) => (profile.base, parameters.or(&profile.parameters)),
-        None => (name, *parameters),
+        None => (name, parameters.clone()),
     }
 }
 
@@ -98,9 +105,9 @@ pub enum ProfileError {
     /// It is a blend, where only a plain profile may be.
     #[error("a blend must consist of plain profiles; `{0}` is a blend")]
     IsBlend(String),
-    /// A parameter is no finite number.
-    #[error("the parameter {0} must be a finite number")]
-    NotFinite(&'static str),
+    /// There is no such parameter, or its value is of another kind.
+    #[error("{0}")]
+    Parameter(String),
     /// Its profiles do not fit together.
     #[error(transparent)]
     Blend(#[from] BlendError),
@@ -129,7 +136,7 @@ fn ends_of_blend(name: &str) -> Option<(&str, &str)> {
 pub fn named(name: &str, parameters: &Parameters) -> Result<Blend, ProfileError> {
     let Some((first, second)) = ends_of_blend(name) else {
         let (_, all) = resolved(name, parameters);
-        return Ok(Blend::single(plain(name, parameters)?, all.sph()));
+        return Ok(Blend::single(plain(name, parameters)?, all.part()));
     };
     let profiles = [plain(first, parameters)?, plain(second, parameters)?];
     let densities = BLEND_DENSITIES.into_iter().zip(profiles);
@@ -138,7 +145,7 @@ pub fn named(name: &str, parameters: &Parameters) -> Result<Blend, ProfileError>
         profile,
     });
     let name = format!("{first}->{second}");
-    Ok(Blend::new(name, parameters.sph(), steps.collect())?)
+    Ok(Blend::new(name, parameters.part(), steps.collect())?)
 }
 
 /// A calibrated profile, or one of the five of §5.5 that are not blends.
@@ -146,7 +153,6 @@ pub fn named(name: &str, parameters: &Parameters) -> Result<Blend, ProfileError>
 /// # Errors
 /// No profile has this name, or it is a blend.
 pub fn plain(name: &str, parameters: &Parameters) -> Result<Profile, ProfileError> {
-    parameters.check().map_err(ProfileError::NotFinite)?;
     let (base, parameters) = resolved(name, parameters);
     let (kind, sph) = match base {
         "sf" => (NavigationKind::Social, false),

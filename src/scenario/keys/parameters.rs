@@ -1,22 +1,71 @@
-//! The parameters of profiles, and the parts of the engine that they set.
+//! The parameters of profiles: values by name, and the structs of the engine that they set.
 
-use std::sync::Arc;
+use std::fmt;
+use std::sync::{Arc, LazyLock};
 
-use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserialize, Serialize};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{DeserializeOwned, DeserializeSeed, Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value, json};
 
+use crate::error::in_plain_words;
+use crate::keys::{catalog::ProfileError, names::names};
 use engine::density::SphParameters;
-use engine::forces::contact::Contact;
-use engine::forces::drag::Drag;
-use engine::forces::goal::GoalForce;
-use engine::forces::legs::Legs;
-use engine::forces::own::Force;
-use engine::forces::rvo::Rvo;
-use engine::forces::social::SocialForce;
-use engine::forces::viscosity::Viscosity;
-use engine::forces::walking::headings::Gap;
-use engine::forces::walking::{DensityAhead, Headings, Headway};
+use engine::forces::walking::{DensityAhead, Headings, Headway, headings::Gap};
+use engine::forces::{contact::Contact, drag::Drag, goal::GoalForce, legs::Legs, own::Force};
+use engine::forces::{rvo::Rvo, social::SocialForce, viscosity::Viscosity};
+
+/// The structs whose fields are the parameters. Meaning, range and default of a parameter are those of the field.
+const PARTS: [Part; 12] = [
+    Part::of::<Walking>(),
+    Part::of::<Viscosity>(),
+    Part::of::<Contact>(),
+    Part::of::<GoalForce>(),
+    Part::of::<SocialForce>(),
+    Part::of::<Headway>(),
+    Part::of::<Headings>(),
+    Part::of::<Gap>(),
+    Part::of::<DensityAhead>(),
+    Part::of::<Drag>(),
+    Part::of::<Rvo>(),
+    Part::of::<SphParameters>(),
+];
+
+/// The forces that are not in the paper. A profile has one if the parameter of its name is true.
+const FORCES: [Switched; 1] = [Switched {
+    name: "legs",
+    about: "Whether people have legs under their bodies, and sway: the law of Chatagnon and others (2026). All \
+            profiles of a blend have the same legs.",
+    part: Part::of::<Legs>(),
+    force: |all| Arc::new(all.part::<Legs>()),
+}];
+
+/// The parameter that no struct of the engine has.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Walking {
+    /// What slows agents in a crowd, beside the paper's forces: `headway`, a time gap to the nearest agent ahead;
+    /// `headings`, also a choice of directions by the room along them; `density-ahead`, Weidmann's speed at the
+    /// density ahead; `drag`, a friction. A law replaces social forces; with both, agents brake twice.
+    pub walking_law: WalkingLawKind,
+}
+
+/// The kind of walking law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum WalkingLawKind {
+    /// None: the paper's profiles.
+    #[default]
+    None,
+    /// A time gap to the nearest agent ahead.
+    Headway,
+    /// Slower the denser the crowd ahead.
+    DensityAhead,
+    /// Friction by density.
+    Drag,
+    /// A choice of headings by the room along them, with a time gap.
+    Headings,
+}
 
 /// The kind of navigation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
@@ -30,234 +79,181 @@ pub enum NavigationKind {
     Rvo,
 }
 
-/// The kind of walking law.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum WalkingLawKind {
-    /// None: the paper's profiles.
-    None,
-    /// A time gap to the nearest agent ahead.
-    Headway,
-    /// Slower the denser the crowd ahead.
-    DensityAhead,
-    /// Friction by density.
-    Drag,
-    /// A choice of headings by the room along them, with a time gap.
-    Headings,
+/// A struct whose fields are parameters.
+struct Part {
+    names: fn() -> &'static [&'static str],
+    schema: fn(&mut SchemaGenerator) -> Schema,
+    /// The value as the field of this name has it.
+    read: fn(&str, Value) -> serde_json::Result<Value>,
 }
 
-/// The kind of a parameter: a number, if no other is given.
-macro_rules! kind {
-    () => {
-        f64
-    };
-    ($kind:ty) => {
-        $kind
-    };
-}
-
-/// Declares the parameters of profiles, and how parts of the engine are made of them. Meaning, range and default of a
-/// parameter are those of the engine's field of the same name. A part with `if` is a force that is not in the paper: a
-/// profile has it if the parameter named there is true.
-macro_rules! parameters {
-    (
-        $(#[$about:meta])*
-        pub struct $All:ident {
-            $($(#[$own_about:meta])* $own:ident: $own_kind:ty,)*
-        }
-        $(
-            $(#[$part_about:meta])*
-            $part:ident: $Part:ident { $($name:ident $(: $kind:ty)?),* }
-            $(with $($shared:ident),*)? $(of $($inner:ident),*)? $(if $(#[$switch_about:meta])* $switch:ident)?;
-        )*
-    ) => {
-        $(#[$about])*
-        pub struct $All {
-            $($(#[$own_about])* pub $own: Option<$own_kind>,)*
-            $($($(#[$switch_about])* #[schemars(extend("default" = false))] pub $switch: Option<bool>,)?)*
-            $($(
-                #[doc = concat!("[`", stringify!($Part), "::", stringify!($name), "`].")]
-                pub $name: Option<kind!($($kind)?)>,
-            )*)*
-        }
-
-        impl $All {
-            /// These values, and those of `fallback` where these are `None`.
-            pub fn or(&self, fallback: &Self) -> Self {
-                Self {
-                    $($own: self.$own.or(fallback.$own),)*
-                    $($($switch: self.$switch.or(fallback.$switch),)?)*
-                    $($($name: self.$name.or(fallback.$name),)*)*
-                }
-            }
-
-            /// The name of a number of a part that is not finite.
-            fn not_finite_in_part(&self) -> Option<&'static str> {
-                let is_wrong = |given: Option<f64>| given.is_some_and(|value| !value.is_finite());
-                let all = [$($((stringify!($name), self.$name.map(f64::from)),)*)*];
-                all.into_iter().find_map(|(name, given)| is_wrong(given).then_some(name))
-            }
-
-            /// All forces that are not in the paper and that parameters can switch on.
-            pub fn every_force() -> Vec<Arc<dyn Force>> {
-                let all = Self {
-                    $($($switch: Some(true),)?)*
-                    ..Self::default()
-                };
-                all.forces()
-            }
-
-            /// The forces that are not in the paper.
-            pub fn forces(&self) -> Vec<Arc<dyn Force>> {
-                let mut forces: Vec<Arc<dyn Force>> = Vec::new();
-                $($(if self.$switch == Some(true) {
-                    forces.push(Arc::new(self.$part()));
-                })?)*
-                forces
-            }
-
-            $(
-                $(#[$part_about])*
-                pub fn $part(&self) -> $Part {
-                    let usual = $Part::default();
-                    $Part {
-                        $($name: self.$name.unwrap_or(usual.$name),)*
-                        $($($shared: self.$shared.unwrap_or(usual.$shared),)*)?
-                        $($($inner: self.$inner(),)*)?
-                    }
-                }
-            )*
-        }
-
-        /// The schemas of the parts.
-        const PARTS: &[fn(&mut SchemaGenerator) -> Schema] = &[$($Part::json_schema),*];
-    };
-}
-
-parameters! {
-    /// Parameters of a profile; `None` means the paper's value (§5.5). Where a text says that the paper's time step is
-    /// too long, Δt = 0.02 s is beyond the formula of `docs/findings/stability.md`, and agents shake; `time_step_secs`
-    /// `auto` finds the step.
-    #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-    #[serde(deny_unknown_fields, default)]
-    #[schemars(transform = describe)]
-    pub struct Parameters {
-        /// What slows agents in a crowd, beside the paper's forces: `headway`, a time gap to the nearest agent ahead;
-        /// `headings`, also a choice of directions by the room along them; `density-ahead`, Weidmann's speed at the
-        /// density ahead; `drag`, a friction. A law replaces social forces; with both, agents brake twice.
-        #[schemars(extend("default" = "none"))]
-        walking_law: WalkingLawKind,
-        /// [`Viscosity::coefficient`].
-        viscosity: f64,
-        /// [`Contact::agent_stiffness`].
-        agent_stiffness: f64,
-        /// [`Contact::wall_stiffness`].
-        wall_stiffness: f64,
-        /// [`Contact::contact_scale`].
-        contact_scale: f64,
-        /// [`Contact::wall_contact_scale`].
-        wall_contact_scale: f64,
-    }
-
-    /// The goal force.
-    goal: GoalForce { goal_scale, relaxation_time };
-    /// Social forces.
-    social: SocialForce {
-        agent_strength, agent_range, anticipation_time, wall_strength, wall_range, avoidance_radius, avoidance_tolerance
-    };
-    /// The time gap.
-    headway: Headway { headway_time, headway_length, headway_anticipation, lane_half_width };
-    /// The choice of headings.
-    headings: Headings {
-        heading_angle, heading_half_width, look_ahead, heading_persistence, side_preference, evasion_time
-    } of headway, gap;
-    /// How the time gap depends on motivation, density and narrowings.
-    gap: Gap {
-        hurry_share, press_share, press_density, press_range, queue_share, queue_density, narrowing_share,
-        narrowing_range
-    };
-    /// The law of the density ahead.
-    density_ahead: DensityAhead { jam_density, slowing_density };
-    /// The drag.
-    drag: Drag { drag_per_density, drag_from_density };
-    /// RVO.
-    rvo: Rvo { collision_weight, candidates: u32 } with avoidance_radius;
-    /// The legs under a body.
-    legs_law: Legs {
-        unbalancing_rate, balancing_rate, balance_speed, legs_strength, body_range, leg_range, legs_reach, lean_limit
-    } if
-        /// Whether people have legs under their bodies, and sway: the law of Chatagnon and others (2026). All profiles
-        /// of a blend have the same legs.
-        legs;
-    /// The SPH parameters that all profiles of a blend share.
-    sph: SphParameters { support_radius, gas_constant, rest_density_min, rest_density_max, averaging_time };
-}
-
-/// Gives the parameters the descriptions, ranges and defaults of the engine's fields of the same names.
-fn describe(schema: &mut Schema) {
-    let Some(parameters) = schema.get_mut("properties") else {
-        return;
-    };
-    let others = [Viscosity::json_schema, Contact::json_schema];
-    for schema in PARTS.iter().chain(&others) {
-        let schema = schema(&mut SchemaGenerator::default()).to_value();
-        for (name, field) in schema["properties"].as_object().into_iter().flatten() {
-            let parameter = &mut parameters[name];
-            for word in ["description", "default", "minimum", "maximum"] {
-                if let Some(value) = field.get(word) {
-                    parameter[word] = value.clone();
-                }
-            }
+impl Part {
+    const fn of<T: DeserializeOwned + Serialize + JsonSchema>() -> Self {
+        Self {
+            names: names::<T>,
+            schema: T::json_schema,
+            read: |name, value| Ok(json!(T::deserialize(json!({ name: value }))?)[name].take()),
         }
     }
 }
 
-/// A parameter by name.
-type Field = (&'static str, fn(&mut Parameters) -> &mut Option<f64>);
+/// A force that a parameter switches on.
+struct Switched {
+    name: &'static str,
+    about: &'static str,
+    part: Part,
+    force: fn(&Parameters) -> Arc<dyn Force>,
+}
 
-/// The parameters of SPH.
-pub const SPH: [Field; 5] = [
-    ("support_radius", |all| &mut all.support_radius),
-    ("gas_constant", |all| &mut all.gas_constant),
-    ("rest_density_min", |all| &mut all.rest_density_min),
-    ("rest_density_max", |all| &mut all.rest_density_max),
-    ("averaging_time", |all| &mut all.averaging_time),
-];
+fn parts() -> impl Iterator<Item = &'static Part> {
+    PARTS.iter().chain(FORCES.iter().map(|force| &force.part))
+}
+
+/// The names of all parameters. Each is a field of one struct, or switches a force on.
+static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
+    let of_parts = PARTS.iter().flat_map(|part| (part.names)());
+    let switches = FORCES.iter().map(|force| &force.name);
+    let of_forces = FORCES.iter().flat_map(|force| (force.part.names)());
+    of_parts.chain(switches).chain(of_forces).copied().collect()
+});
+
+/// Parameters of a profile; `None` means the paper's value (§5.5). Where a text says that the paper's time step is
+/// too long, Δt = 0.02 s is beyond the formula of `docs/findings/stability.md`, and agents shake; `time_step_secs`
+/// `auto` finds the step.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+pub struct Parameters(#[schemars(schema_with = "schema")] Map<String, Value>);
 
 impl Parameters {
-    /// The values that are given, by name.
-    pub fn given(&self) -> Map<String, Value> {
-        let Value::Object(mut values) = json!(self) else {
-            return Map::new();
-        };
-        values.retain(|_, value| !value.is_null());
-        values
-    }
-
-    /// Checks that all numbers are finite.
+    /// Parameters with these values: numbers, truth values or words. Ranges are not checked.
     ///
     /// # Errors
-    /// The name of a parameter that is not.
-    pub fn check(&self) -> Result<(), &'static str> {
-        let own = [
-            ("viscosity", self.viscosity),
-            ("agent_stiffness", self.agent_stiffness),
-            ("wall_stiffness", self.wall_stiffness),
-            ("contact_scale", self.contact_scale),
-            ("wall_contact_scale", self.wall_contact_scale),
-        ]
-        .into_iter()
-        .find(|(_, given)| given.is_some_and(|value| !value.is_finite()));
-        let wrong = own.map(|(name, _)| name).or(self.not_finite_in_part());
-        wrong.map_or(Ok(()), Err)
+    /// There is no such parameter, or a value is not of its kind.
+    pub fn of<'a, V: Into<Value>>(
+        values: impl IntoIterator<Item = (&'a str, V)>,
+    ) -> Result<Self, ProfileError> {
+        let mut values = values.into_iter();
+        values.try_fold(Self::default(), |all, (name, value)| all.with(name, value))
+    }
+
+    /// These parameters with another value of one.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn with(&self, name: &str, value: impl Into<Value>) -> Result<Self, ProfileError> {
+        let reason = match Self::deserialize(Value::from_iter([(name, value)])) {
+            Ok(one) if !one.0.is_empty() => return Ok(one.or(self)),
+            Ok(_) => format!("the parameter {name} must be a finite number"), // others are null in JSON
+            Err(error) => format!("{name}: {}", in_plain_words(&error.to_string())),
+        };
+        Err(ProfileError::Parameter(reason))
+    }
+
+    /// The values that are given, by name.
+    pub fn given(&self) -> &Map<String, Value> {
+        &self.0
+    }
+
+    /// The value of a parameter, if it is given.
+    pub fn get(&self, name: &str) -> Option<&Value> {
+        self.0.get(name)
+    }
+
+    /// These values, and those of `fallback` where these are not given.
+    pub fn or(&self, fallback: &Self) -> Self {
+        let mut all = fallback.clone();
+        all.0.extend(self.0.clone());
+        all
+    }
+
+    /// The part of the engine that these values set; other fields have their defaults.
+    pub fn part<T: DeserializeOwned + Default>(&self) -> T {
+        T::deserialize(json!(self.0)).unwrap_or_default() // each value was read as this field before
+    }
+
+    /// The forces that are not in the paper.
+    pub fn forces(&self) -> Vec<Arc<dyn Force>> {
+        let is_on = |force: &&Switched| self.get(force.name) == Some(&true.into());
+        let on = FORCES.iter().filter(is_on);
+        on.map(|force| (force.force)(self)).collect()
+    }
+
+    /// All forces that are not in the paper and that parameters can switch on.
+    pub fn every_force() -> Vec<Arc<dyn Force>> {
+        FORCES.map(|of| (of.force)(&Self::default())).into()
+    }
+}
+
+/// The schema of all parameters. Each may be null, as if it were not given.
+fn schema(generator: &mut SchemaGenerator) -> Schema {
+    let mut properties = Map::new();
+    for force in &FORCES {
+        let switch = json!({"type": "boolean", "description": force.about, "default": false});
+        properties.insert(force.name.into(), switch);
+    }
+    for part in parts() {
+        let mut schema = (part.schema)(generator).to_value();
+        let fields = schema["properties"].as_object_mut();
+        properties.extend(fields.into_iter().flat_map(std::mem::take));
+    }
+    for field in properties.values_mut().filter_map(Value::as_object_mut) {
+        if let Some(definition) = field.remove("$ref") {
+            let ways = json!([{"$ref": definition}, {"type": "null"}]);
+            field.insert("anyOf".into(), ways);
+        } else if let Some(kind @ Value::String(_)) = field.get_mut("type") {
+            *kind = json!([kind, "null"]);
+        }
+    }
+    json_schema!({"type": "object", "properties": properties, "additionalProperties": false})
+}
+
+impl<'de> Deserialize<'de> for Parameters {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_struct("Parameters", &NAMES, Entries)
+    }
+}
+
+/// Reads parameters. Null means that one is not given.
+struct Entries;
+
+impl<'de> Visitor<'de> for Entries {
+    type Value = Parameters;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a map")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Parameters, A::Error> {
+        let mut all = Map::new();
+        while let Some(name) = map.next_key::<String>()? {
+            let value = map.next_value_seed(Field(&name))?;
+            all.extend(value.map(|value| (name, value)));
+        }
+        Ok(Parameters(all))
+    }
+}
+
+/// Reads the value of the parameter of this name, as its field has it.
+struct Field<'a>(&'a str);
+
+impl<'de> DeserializeSeed<'de> for Field<'_> {
+    type Value = Option<Value>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        if !NAMES.contains(&self.0) {
+            return Err(D::Error::unknown_field(self.0, &NAMES));
+        }
+        let read = |value| match parts().find(|part| (part.names)().contains(&self.0)) {
+            Some(part) => (part.read)(self.0, value),
+            None => bool::deserialize(value).map(Value::from), // a switch
+        };
+        let value = Option::deserialize(deserializer)?.map(read);
+        value.transpose().map_err(D::Error::custom)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::keys::catalog;
-    use crate::keys::names::names;
 
     #[test]
     fn every_parameter_of_the_engine_is_listed() {
@@ -276,19 +272,16 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_not_finite_are_errors_with_their_names() {
-        let of_part = Parameters {
-            gas_constant: Some(f64::NAN),
-            ..Parameters::default()
-        };
-        let own = Parameters {
-            viscosity: Some(f64::INFINITY),
-            ..Parameters::default()
-        };
-        for (parameters, name) in [(of_part, "gas_constant"), (own, "viscosity")] {
-            let error = catalog::named("sf->sph", &parameters).unwrap_err();
+    fn values_that_are_no_parameters_are_errors_with_their_names() {
+        for (name, number) in [("gas_constant", f64::NAN), ("viscosity", f64::INFINITY)] {
+            let error = Parameters::of([(name, number)]).unwrap_err();
             let said = format!("the parameter {name} must be a finite number");
             assert_eq!(error.to_string(), said);
         }
+        let said = |name: &str| Parameters::of([(name, 5.5)]).unwrap_err().to_string();
+        let number = "invalid type: floating point `5.5`, expected";
+        assert_eq!(said("legs"), format!("legs: {number} true or false"));
+        let unknown = "viscosty: unknown key `viscosty`; did you mean `viscosity`?";
+        assert_eq!(said("viscosty"), unknown);
     }
 }

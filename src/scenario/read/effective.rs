@@ -17,7 +17,7 @@ impl Scenario {
         let given = self.document.as_object().cloned().unwrap_or_default();
         let mut all = filled(names::<File>(), given);
         let calibrated = calibrated::named(&self.profile_name);
-        let mut own = calibrated.map_or(Map::new(), |profile| profile.parameters.given());
+        let mut own = calibrated.map_or(Map::new(), |profile| profile.parameters.given().clone());
         let set = all.get("parameters").and_then(Value::as_object);
         own.extend(set.cloned().unwrap_or_default());
         let parameters = filled(names::<Parameters>(), own);

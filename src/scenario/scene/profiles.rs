@@ -3,7 +3,9 @@
 use crate::error::numbers::brief;
 use crate::error::{Problem, Under};
 use crate::keys::catalog::{self, Parameters, ProfileError};
+use crate::keys::names::names;
 use crate::keys::profiles::{CustomProfile, ProfileChoice, ProfileName, Step};
+use engine::density::SphParameters;
 use engine::profile::{Blend, BlendStep, Profile};
 
 impl From<ProfileError> for Problem {
@@ -44,8 +46,8 @@ fn custom_blend(custom: &CustomProfile, overriding: &Parameters) -> Result<Blend
     let profile = custom_profile(custom, &parameters)?;
     // A calibrated base has parameters of its own.
     let sph = match &custom.base {
-        Some(ProfileName(base)) => catalog::resolved(base, &parameters).1.sph(),
-        None => parameters.sph(),
+        Some(ProfileName(base)) => catalog::resolved(base, &parameters).1.part(),
+        None => parameters.part(),
     };
     Ok(Blend::single(profile, sph))
 }
@@ -105,7 +107,7 @@ fn blend_of_steps(
         let names: Vec<&str> = each.collect();
         names.join("->")
     });
-    Blend::new(name, parameters.sph(), converted)
+    Blend::new(name, parameters.part(), converted)
         .map_err(|error| Problem::new("blend", error.to_string()))
 }
 
@@ -123,9 +125,12 @@ fn step_profile(choice: &ProfileChoice, parameters: &Parameters) -> Result<Profi
 fn own_parameters(choice: &ProfileChoice) -> Parameters {
     let (name, own) = match choice {
         ProfileChoice::Named(name) => (Some(name), Parameters::default()),
-        ProfileChoice::Custom(custom) => (custom.base.as_ref(), custom.parameters),
+        ProfileChoice::Custom(custom) => (custom.base.as_ref(), custom.parameters.clone()),
     };
-    name.map_or(own, |ProfileName(name)| catalog::resolved(name, &own).1)
+    match name {
+        Some(ProfileName(name)) => catalog::resolved(name, &own).1,
+        None => own,
+    }
 }
 
 /// The SPH parameters given anywhere in a blend, which apply to all of it.
@@ -135,13 +140,14 @@ fn shared_by(custom: &CustomProfile, steps: &[Step]) -> Result<Parameters, Probl
         let own = own_parameters(&step.profile);
         (format!("blend[{k}].profile."), own)
     });
-    let of_all = std::iter::once((String::new(), custom.parameters));
-    for (place, mut own) in of_all.chain(of_steps) {
-        for (key, field) in catalog::SPH {
-            let Some(here) = *field(&mut own) else {
+    let of_all = std::iter::once((String::new(), custom.parameters.clone()));
+    for (place, own) in of_all.chain(of_steps) {
+        for key in names::<SphParameters>() {
+            let number = |all: &Parameters| all.get(key)?.as_f64();
+            let Some(here) = number(&own) else {
                 continue;
             };
-            let before = *field(&mut shared).get_or_insert(here);
+            let before = number(&shared).unwrap_or(here);
             if before != here {
                 let reason = format!(
                     "must be the same in all profiles of a blend: {} here, {} before; give it once",
@@ -150,6 +156,7 @@ fn shared_by(custom: &CustomProfile, steps: &[Step]) -> Result<Parameters, Probl
                 );
                 return Err(Problem::new(format!("{place}parameters.{key}"), reason));
             }
+            shared = shared.with(key, here)?;
         }
     }
     Ok(shared)

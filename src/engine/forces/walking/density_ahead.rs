@@ -15,6 +15,7 @@ use std::f64::consts::LN_2;
 use std::ops::Range;
 
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::Walkers;
 use super::headway::AGAINST;
@@ -25,8 +26,8 @@ use crate::pairs::prelude::*;
 use crate::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
 
 /// Parameters of the law of the density ahead.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
-#[schemars(default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct DensityAhead {
     /// The jam density (`density-ahead`), P/m²: agents stand before a crowd of this density. Higher: faster crowds.
     #[schemars(range(min = 0.01, max = HIGHEST_DENSITY))]

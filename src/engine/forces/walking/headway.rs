@@ -15,6 +15,7 @@
 use std::ops::Range;
 
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{FADE, Motions, ROUNDING, View, Walkers};
 use crate::forces::rates::Rates;
@@ -24,8 +25,8 @@ use crate::pairs::prelude::*;
 use crate::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat};
 
 /// Parameters of the headway law.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
-#[schemars(default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Headway {
     /// T (`headway`), seconds: the time gap. An agent with d meters to the nearest agent ahead walks at (d - l)/T.
     /// Longer: slower crowds and smaller flows. Below about twice `relaxation_time` files stop and go.

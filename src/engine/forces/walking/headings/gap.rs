@@ -1,6 +1,7 @@
 //! How the time gap T depends on motivation, density and narrowings.
 
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::limits::{FARTHEST, HIGHEST_DENSITY};
 
@@ -8,8 +9,8 @@ use crate::limits::{FARTHEST, HIGHEST_DENSITY};
 ///
 /// Hurried people follow each other more closely. Calm people do so only where they are packed; in a queue they keep
 /// longer gaps. All keep longer gaps where the way becomes narrower.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
-#[schemars(default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Gap {
     /// `headings`: the share of T that agents with a motivation of 1 do without.
     #[schemars(range(min = 0, max = 0.95))]

@@ -27,6 +27,7 @@ pub use room::before_wall;
 use std::f64::consts::TAU;
 
 use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{FADE, Headway, View};
 use crate::clock::Clock;
@@ -45,14 +46,14 @@ pub const CHOICE_TIME: f64 = 0.2;
 pub const STRAIGHT: usize = COUNT / 2;
 
 /// Parameters of the choice of headings.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
-#[schemars(default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Headings {
     /// The speed along a heading.
-    #[schemars(skip)]
+    #[serde(skip)]
     pub headway: Headway,
     /// How T depends on motivation, density and narrowings.
-    #[schemars(skip)]
+    #[serde(skip)]
     pub gap: Gap,
     /// The largest angle between a heading and the way (`headings`), degrees.
     #[schemars(range(min = 0, max = 90))]
