@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-pub use super::parameters::{NavigationKind, Parameters, WalkingLawKind};
+pub use super::parameters::{NavigationKind, ParameterError, Parameters, WalkingLawKind};
 
 use crate::error::{quote::shown, suggestion};
 use crate::keys::{calibrated, parameters::Walking};
@@ -106,8 +106,8 @@ pub enum ProfileError {
     #[error("a blend must consist of plain profiles; `{0}` is a blend")]
     IsBlend(String),
     /// There is no such parameter, or its value is of another kind.
-    #[error("{0}")]
-    Parameter(String),
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
     /// Its profiles do not fit together.
     #[error(transparent)]
     Blend(#[from] BlendError),

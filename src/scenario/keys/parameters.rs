@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value, json};
 
 use crate::error::in_plain_words;
-use crate::keys::{catalog::ProfileError, names::names};
+use crate::keys::names::names;
 use engine::density::SphParameters;
 use engine::forces::walking::{DensityAhead, Headings, Headway, headings::Gap};
 use engine::forces::{contact::Contact, drag::Drag, goal::GoalForce, legs::Legs, own::Force};
@@ -123,6 +123,11 @@ static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Parameters(#[schemars(schema_with = "schema")] Map<String, Value>);
 
+/// There is no such parameter, or its value is of another kind.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct ParameterError(String);
+
 impl Parameters {
     /// Parameters with these values: numbers, truth values or words. Ranges are not checked.
     ///
@@ -130,7 +135,7 @@ impl Parameters {
     /// There is no such parameter, or a value is not of its kind.
     pub fn of<'a, V: Into<Value>>(
         values: impl IntoIterator<Item = (&'a str, V)>,
-    ) -> Result<Self, ProfileError> {
+    ) -> Result<Self, ParameterError> {
         let mut values = values.into_iter();
         values.try_fold(Self::default(), |all, (name, value)| all.with(name, value))
     }
@@ -139,13 +144,13 @@ impl Parameters {
     ///
     /// # Errors
     /// As [`of`](Self::of).
-    pub fn with(&self, name: &str, value: impl Into<Value>) -> Result<Self, ProfileError> {
+    pub fn with(&self, name: &str, value: impl Into<Value>) -> Result<Self, ParameterError> {
         let reason = match Self::deserialize(Value::from_iter([(name, value)])) {
             Ok(one) if !one.0.is_empty() => return Ok(one.or(self)),
             Ok(_) => format!("the parameter {name} must be a finite number"), // others are null in JSON
             Err(error) => format!("{name}: {}", in_plain_words(&error.to_string())),
         };
-        Err(ProfileError::Parameter(reason))
+        Err(ParameterError(reason))
     }
 
     /// The values that are given, by name.

@@ -156,7 +156,7 @@ fn shared_by(custom: &CustomProfile, steps: &[Step]) -> Result<Parameters, Probl
                 );
                 return Err(Problem::new(format!("{place}parameters.{key}"), reason));
             }
-            shared = shared.with(key, here)?;
+            shared = shared.with(key, here).map_err(ProfileError::from)?;
         }
     }
     Ok(shared)
