@@ -16,7 +16,7 @@ use engine::forces::{contact::Contact, drag::Drag, goal::GoalForce, legs::Legs, 
 use engine::forces::{rvo::Rvo, social::SocialForce, viscosity::Viscosity};
 
 /// The structs whose fields are the parameters. Meaning, range and default of a parameter are those of the field.
-const PARTS: [Part; 12] = [
+const PARTS: &[Part] = &[
     Part::of::<Walking>(),
     Part::of::<Viscosity>(),
     Part::of::<Contact>(),
@@ -32,7 +32,7 @@ const PARTS: [Part; 12] = [
 ];
 
 /// The forces that are not in the paper. A profile has one if the parameter of its name is true.
-const FORCES: [Switched; 1] = [Switched {
+const FORCES: &[Switched] = &[Switched {
     name: "legs",
     about: "Whether people have legs under their bodies, and sway: the law of Chatagnon and others (2026). All \
             profiles of a blend have the same legs.",
@@ -184,14 +184,17 @@ impl Parameters {
 
     /// All forces that are not in the paper and that parameters can switch on.
     pub fn every_force() -> Vec<Arc<dyn Force>> {
-        FORCES.map(|of| (of.force)(&Self::default())).into()
+        FORCES
+            .iter()
+            .map(|of| (of.force)(&Self::default()))
+            .collect()
     }
 }
 
 /// The schema of all parameters. Each may be null, as if it were not given.
 fn schema(generator: &mut SchemaGenerator) -> Schema {
     let mut properties = Map::new();
-    for force in &FORCES {
+    for force in FORCES {
         let switch = json!({"type": "boolean", "description": force.about, "default": false});
         properties.insert(force.name.into(), switch);
     }
