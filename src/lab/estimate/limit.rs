@@ -88,7 +88,7 @@ struct Component {
 
 impl Limit {
     /// The limit of measurements at some levels, from the finest to the coarsest. `variance` is that of single runs.
-    /// `shares` are the weights of [`SIZES`].
+    /// `shares` are the weights of `SIZES`.
     pub fn of(levels: &[Level], variance: f64, shares: &[f64; SIZES.len()]) -> Self {
         // In standard deviations of a run, from the finest level's mean: sums of squares of the values themselves would
         // lose digits.

@@ -11,7 +11,7 @@ use engine::simulation::Simulation;
 /// Below this speed, m/s, an agent faces its goal: the direction of such a velocity is noise.
 const STANDING: f64 = 0.01;
 
-/// One agent in one evaluated frame. As a record it has the fields of [`columns`].
+/// One agent in one evaluated frame. As a record it has the fields of [`COLUMNS`], and of the forces that keep a state.
 #[derive(Clone, Copy)]
 pub struct Row<'a> {
     /// The frame's number at the file's own rate, from 0.
