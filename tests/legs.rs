@@ -256,6 +256,37 @@ impl Force for Kick {
     }
 }
 
+/// A force without a state that has the name of one with a state.
+#[derive(Debug)]
+struct Namesake;
+
+impl Force for Namesake {
+    fn name(&self) -> &str {
+        "legs"
+    }
+
+    fn rates(&self, _: &Extremes) -> Rates {
+        Rates::default()
+    }
+
+    fn acceleration(&self, _: &Frame, _: usize) -> Vector {
+        Vector::zeros()
+    }
+}
+
+#[test]
+fn forces_of_one_name_must_keep_the_same_numbers() {
+    let agents = vec![walker(Vector::zeros(), vector(0.3, 0.0), Vector::zeros())];
+    let mut scene = standing(alone(0.5), agents);
+    assert!(Simulation::new(scene.clone()).is_ok());
+    scene.own_forces.push(Arc::new(Namesake));
+    let fault = Simulation::new(scene).err().unwrap();
+    assert_eq!(
+        fault.to_string(),
+        "two forces are named legs, and they keep different numbers for agents; give one another name"
+    );
+}
+
 #[test]
 fn a_lone_person_with_slow_legs_turns_at_the_frequency_of_the_closed_form() {
     let [falling, recovery, speed, friction] = [0.2, 0.3, 0.5, 0.5];

@@ -198,13 +198,21 @@ pub enum Fault {
         /// The obstacle's index.
         obstacle: usize,
     },
+    /// Two forces of the same name keep different numbers for agents.
+    #[error(
+        "two forces are named {force}, and they keep different numbers for agents; give one another name"
+    )]
+    DifferentStates {
+        /// The name of both.
+        force: String,
+    },
 }
 
 impl Simulation {
     /// Builds a simulation and lets the initial agents in.
     ///
     /// # Errors
-    /// An agent is inside an obstacle, and no free point is near.
+    /// An agent is inside an obstacle, and no free point is near; or two forces of one name keep different numbers.
     pub fn new(scene: Scene) -> Result<Self, Fault> {
         let fixed = Fixed {
             needs: scene.needs(),
@@ -225,7 +233,7 @@ impl Simulation {
             changed: true,
             decided: false,
         };
-        crowd.agents.states = fixed.no_states();
+        crowd.agents.states = fixed.no_states()?;
         for agent in scene.agents {
             crowd.enter(&fixed.scene, agent)?;
         }

@@ -1,8 +1,10 @@
 //! The states that forces keep for agents: their beginning, their rates of change and their steps.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
-use super::{Fixed, Simulation, Stage};
+use super::{Fault, Fixed, Simulation, Stage};
 use crate::agents::{Agents, States};
 use crate::forces::own::{Body, Force, Step};
 use crate::neighbors::{BLOCK, TASK};
@@ -22,13 +24,37 @@ impl Fixed {
         self.forces(agents, i).find(|force| force.name() == name)
     }
 
+    /// Takes the agents among `agents` on which the force of this name acts, with the force.
+    fn each_with_force(
+        &self,
+        agents: &Agents,
+        range: Range<usize>,
+        name: &str,
+        mut take: impl FnMut(Range<usize>, &dyn Force),
+    ) {
+        self.each_span(agents, range, |span, _, _| {
+            if let Some(force) = self.force(agents, span.start, name) {
+                take(span, force);
+            }
+        });
+    }
+
     /// No states yet, of all forces that keep one.
-    pub(super) fn no_states(&self) -> Vec<States> {
-        let all = self.scene.keeping_forces().into_iter().map(|force| {
+    pub(super) fn no_states(&self) -> Result<Vec<States>, Fault> {
+        let keeping = self.scene.keeping_forces();
+        for force in self.scene.all_forces() {
+            let mut others = keeping.iter().filter(|other| other.name() == force.name());
+            if others.any(|other| other.kept() != force.kept()) {
+                return Err(Fault::DifferentStates {
+                    force: force.name().to_owned(),
+                });
+            }
+        }
+        let all = keeping.into_iter().map(|force| {
             let along = force.kept().iter().map(|kept| kept.along);
             States::new(force.name(), along.collect())
         });
-        all.collect()
+        Ok(all.collect())
     }
 
     /// Fits the states of agent `i` to its body, which was moved back before a line.
@@ -82,13 +108,20 @@ impl Simulation {
             rates.clear();
             rates.resize(agents.len() * width, 0.0);
             let frame = self.derived.frame(&self.fixed, &self.crowd);
+            let fixed = &self.fixed;
             self.stages.time(Stage::Acceleration, || {
-                let each = rates.par_chunks_mut(width).with_min_len(TASK * BLOCK);
-                each.enumerate().for_each(|(i, rates)| {
-                    let force = self.fixed.force(agents, i, &states.force);
-                    if let (Some(force), Some(state)) = (force, states.of(i)) {
-                        force.change(&frame, i, state, rates);
-                    }
+                let blocks = rates.par_chunks_mut(width * BLOCK).with_min_len(TASK);
+                blocks.enumerate().for_each(|(b, rates)| {
+                    let from = b * BLOCK;
+                    let range = from..from + rates.len() / width;
+                    fixed.each_with_force(agents, range, &states.force, |span, force| {
+                        let rates = &mut rates[(span.start - from) * width..];
+                        for (i, rates) in span.zip(rates.chunks_mut(width)) {
+                            if let Some(state) = states.of(i) {
+                                force.change(&frame, i, state, rates);
+                            }
+                        }
+                    });
                 });
             });
         }
@@ -105,23 +138,29 @@ impl Simulation {
         for (states, rates) in all.iter_mut().zip(&self.derived.fields.state_rates) {
             let (width, name) = (states.width(), states.force.clone());
             self.stages.time(Stage::Integration, || {
-                let each = states.values_mut().par_chunks_mut(width);
-                let each = each.zip(rates.par_chunks(width)).enumerate();
-                each.with_min_len(TASK * BLOCK)
-                    .for_each(|(i, (state, rates))| {
-                        let Some(force) = fixed.force(agents, i, &name) else {
-                            return;
-                        };
-                        let body = fixed.body(agents, i, neighbors.near_walls(i));
-                        let step = Step {
-                            time: dt,
-                            integrator: fixed.scene.integrator,
-                            max_speed: fixed.scene.max_speed(agents, i),
-                            body,
-                        };
-                        force.advance(&step, rates, state);
-                        force.fit(&body, state);
+                let blocks = states.values_mut().par_chunks_mut(width * BLOCK);
+                let blocks = blocks.zip(rates.par_chunks(width * BLOCK));
+                let blocks = blocks.with_min_len(TASK).enumerate();
+                blocks.for_each(|(b, (states, rates))| {
+                    let from = b * BLOCK;
+                    let range = from..from + states.len() / width;
+                    fixed.each_with_force(agents, range, &name, |span, force| {
+                        let own = (span.start - from) * width..(span.end - from) * width;
+                        let states = states[own.clone()].chunks_mut(width);
+                        let both = states.zip(rates[own].chunks(width));
+                        for (i, (state, rates)) in span.zip(both) {
+                            let body = fixed.body(agents, i, neighbors.near_walls(i));
+                            let step = Step {
+                                time: dt,
+                                integrator: fixed.scene.integrator,
+                                max_speed: fixed.scene.max_speed(agents, i),
+                                body,
+                            };
+                            force.advance(&step, rates, state);
+                            force.fit(&body, state);
+                        }
                     });
+                });
             });
         }
         self.crowd.agents.states = all;

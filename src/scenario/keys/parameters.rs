@@ -171,8 +171,8 @@ impl Parameters {
     }
 
     /// The part of the engine that these values set; other fields have their defaults.
-    pub fn part<T: DeserializeOwned + Default>(&self) -> T {
-        T::deserialize(json!(self.0)).unwrap_or_default() // each value was read as this field before
+    pub fn part<T: DeserializeOwned>(&self) -> T {
+        T::deserialize(json!(self.0)).expect("each value was read as this field when it was given")
     }
 
     /// The forces that are not in the paper.
