@@ -3,6 +3,7 @@
 mod coverage;
 mod knowledge;
 mod report;
+mod scenes;
 
 pub use coverage::{Coverage, Covered, Pool, coverage};
 pub use knowledge::{KNOWLEDGE, Knowledge, knowledge};

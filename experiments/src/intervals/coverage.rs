@@ -7,11 +7,12 @@
 
 use serde::Serialize;
 
+use super::scenes::MADE_ON as SCENES;
 use sandbox::analysis::statistics::{MeanStd, shuffled};
 use sandbox::lab::error::LabError;
 use sandbox::lab::estimate::{
     Goal, Limits, MOST_PREDICTED, Means, Offer, Prior, Question, QuestionError, Request, Runs,
-    Sampling, Series, Wanted, first_round, further, pilot, predicted,
+    Sampling, Series, Tolerance, Wanted, first_round, further, pilot, predicted,
 };
 use sandbox::lab::jobs::each;
 use sandbox::runs::case::Source;
@@ -29,23 +30,10 @@ const HALVINGS: usize = 2;
 const MOST_DRAWN: usize = 1000;
 /// Predicted numbers of runs within this factor of the true one count as right.
 const FACTOR: f64 = 1.5;
-/// The profiles.
-const PROFILES: [&str; 4] = ["sph", "walk+sph", "sf->sph", "rvo->sph"];
-/// The scenes, relative to the shipped scenarios, with results and their errors.
-const SCENES: [(&str, [&str; 3]); 2] = [
-    (
-        "evacuation.json",
-        ["density_mean_15s=0.5%", "flow_per_s=1%", "time_secs=2%"],
-    ),
-    (
-        "validation/gap.json",
-        [
-            "gap_flow_per_s=1%",
-            "gap_density_per_m2=1%",
-            "gap_speed_m_per_s=2%",
-        ],
-    ),
-];
+/// The errors that are asked for, in standard deviations of a run at the finest step.
+const ERRORS: [f64; 3] = [1.0, 0.5, 0.25];
+/// Estimates with fewer runs than this are counted apart.
+const FEW: usize = 20;
 
 /// The size of a study of intervals.
 #[derive(Debug, Clone, Copy)]
@@ -101,6 +89,10 @@ pub struct Covered {
     pub predicted: [f64; 2],
     /// The number of estimates that ended before the error asked for because draws ran out.
     pub unfinished: usize,
+    /// Of the estimates with fewer than 20 runs, those whose interval holds the mean at the finest step, and all.
+    pub few: [usize; 2],
+    /// The same of those with 20 runs and more.
+    pub many: [usize; 2],
 }
 
 /// The results of a study of intervals.
@@ -118,18 +110,15 @@ pub struct Coverage {
 /// A run fails, or results cannot be stored.
 pub fn coverage(pool: Pool, store: &Store, listener: &dyn Listener) -> Result<Coverage, LabError> {
     let (mut rows, mut secs) = (Vec::new(), 0.0);
-    for (file, errors) in SCENES {
-        for profile in PROFILES {
-            let question = question(file, profile, &errors)?;
+    for scene in SCENES {
+        for profile in scene.profiles {
+            let question = question(scene.file, profile, scene.results)?;
             let (runs, finest) = pooled(&question, pool, store, listener)?;
             secs += runs.measured_secs();
-            for k in 0..errors.len() {
-                let row = covered(&runs, k, finest, pool)?;
-                listener.notes(&format!(
-                    "{} {}: {}: {} of {} intervals hold the value, {:.0} runs",
-                    row.scene, row.profile, row.result, row.held, row.estimates, row.runs
-                ));
-                rows.push(row);
+            for k in 0..scene.results.len() {
+                for error in ERRORS {
+                    rows.extend(covered(&runs, k, finest, (pool, error))?);
+                }
             }
         }
     }
@@ -151,11 +140,14 @@ pub(super) fn pooled<'a>(
     Ok((runs, finest))
 }
 
-pub(super) fn question(file: &str, profile: &str, errors: &[&str]) -> Result<Question, LabError> {
+pub(super) fn question(file: &str, profile: &str, results: &[&str]) -> Result<Question, LabError> {
     let invalid = |error: QuestionError| LabError::Data(error.to_string());
-    let wanted: Result<Vec<Wanted>, String> = errors.iter().map(|text| text.parse()).collect();
+    let wanted = results.iter().map(|name| Wanted {
+        name: (*name).to_owned(),
+        error: Tolerance::Relative(0.01), // each estimate has its own
+    });
     let request = Request {
-        wanted: wanted.map_err(LabError::Data)?,
+        wanted: wanted.collect(),
         bounds: Vec::new(),
         sampling: Sampling::default(),
         confidence: CONFIDENCE,
@@ -179,10 +171,16 @@ struct Estimate {
     means: Option<Means>,
 }
 
-fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, LabError> {
+/// The estimates of a result with this error, in standard deviations of a run; `None` if all runs have the same value.
+fn covered(
+    runs: &Runs,
+    k: usize,
+    finest: usize,
+    (pool, error): (Pool, f64),
+) -> Result<Option<Covered>, LabError> {
     let question = runs.question;
-    let wanted = &question.request.wanted[k];
-    let all = runs.series(&wanted.name);
+    let name = &question.request.wanted[k].name;
+    let all = runs.series(name);
     let all = Series {
         steps: all.steps[finest..].to_vec(),
         values: all.values[finest..].to_vec(),
@@ -194,7 +192,15 @@ fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, 
         .filter_map(|values| MeanStd::of(&values.iter().flatten().copied().collect::<Vec<_>>()))
         .collect();
     let Some((finest_mean, whole)) = at_steps.first().zip(all.means(&Prior::NONE)) else {
-        return Err(LabError::missing(&question.title[0], &wanted.name));
+        return Err(LabError::missing(&question.title[0], name));
+    };
+    let spread = finest_mean.std().unwrap_or_default();
+    if spread == 0.0 || finest_mean.mean == 0.0 {
+        return Ok(None);
+    }
+    let wanted = &Wanted {
+        name: name.clone(),
+        error: Tolerance::Relative(error * spread / finest_mean.mean.abs()),
     };
     let reference = whole.reached(CONFIDENCE);
     let prior = &runs.priors[k];
@@ -242,7 +248,11 @@ fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, 
         let runs = ((NORMAL * mean.std()?).powi(2) / room).ceil().max(2.0);
         (room > 0.0).then_some([runs, runs * offer.secs])
     });
-    Ok(Covered {
+    let few = |of: bool| {
+        let all = estimates.iter().filter(move |one| (one.runs < FEW) == of);
+        [all.clone().filter(|one| one.held[0]).count(), all.count()]
+    };
+    Ok(Some(Covered {
         scene: question.title[0].clone(),
         profile: question.title[1].clone(),
         result: wanted.name.clone(),
@@ -260,7 +270,9 @@ fn covered(runs: &Runs, k: usize, finest: usize, pool: Pool) -> Result<Covered, 
         known: known.min_by(|a, b| a[1].total_cmp(&b[1])),
         predicted: [by_estimate, by_pool],
         unfinished: estimates.iter().filter(|one| !one.is_finished).count(),
-    })
+        few: few(true),
+        many: few(false),
+    }))
 }
 
 /// Where the runs of an estimate come from, and what is known before.

@@ -31,7 +31,30 @@ impl Coverage {
         Ok(Findings::new(COVERAGE, document, data).with_table(COVERAGE, &self.table())?)
     }
 
+    /// The shares of intervals that hold the value: of estimates with fewer than 20 runs, and of the others.
+    fn by_runs(&self) -> [Share; 2] {
+        let of = |counts: &dyn Fn(&Covered) -> [usize; 2]| {
+            let sum = |k: usize| self.rows.iter().map(|row| counts(row)[k]).sum();
+            Share::of(sum(0), sum(1))
+        };
+        [of(&|row| row.few), of(&|row| row.many)]
+    }
+
+    /// The scenes, each with the share of intervals that hold the value.
+    fn scenes(&self) -> Vec<(&str, Share)> {
+        let scenes = self.rows.chunk_by(|a, b| a.scene == b.scene);
+        let share = |rows: &[Covered]| {
+            let held = rows.iter().map(|row| row.held).sum();
+            Share::of(held, rows.iter().map(|row| row.estimates).sum())
+        };
+        let named = scenes.map(|rows| (rows[0].scene.as_str(), share(rows)));
+        named.collect()
+    }
+
     fn overview(&self) -> String {
+        let [few, many] = self.by_runs();
+        let scenes = self.scenes().into_iter();
+        let scenes: Vec<String> = scenes.map(|(name, share)| format!("{name} {share}")).collect();
         let worst = self
             .rows
             .iter()
@@ -44,11 +67,13 @@ impl Coverage {
             Range::of(&ratios.collect::<Vec<_>>()).median
         };
         format!(
-            "{} % intervals hold the value in {} of all estimates; worst row {:.1} %. Median over the rows: {:.1} \
+            "{} % intervals hold the value in {} of all estimates, {few} with fewer than 20 runs and {many} with \
+             more; by scene: {}; worst row {:.1} %. Median over the rows: {:.1} \
              times the runs and {:.1} times the time of an estimate for which spread and error of the step are known. \
              The pools of {} runs at each step took {:.2} hours on one core.",
             100.0 * CONFIDENCE,
             self.total(),
+            scenes.join(", "),
             Range::of(&worst.collect::<Vec<_>>()).minimum,
             ratio(0, &|row| row.runs),
             ratio(1, &|row| row.secs),
