@@ -182,9 +182,23 @@ fn every_value_has_a_definition_and_the_page_has_all_of_them() {
     }
 }
 
+/// The document with lines whose flow has no region: they have fewer values.
+fn without_regions_before_lines(document: &Value) -> Value {
+    let mut document = document.clone();
+    let measurements = document["measurements"].as_array_mut();
+    for flow in measurements.into_iter().flatten() {
+        let keys = flow.get_mut("line_flow").and_then(Value::as_object_mut);
+        keys.map(|keys| keys.remove("region"));
+    }
+    document
+}
+
 #[test]
 fn every_measurement_has_as_many_values_as_quantities() {
-    for document in documents() {
+    let whole = documents();
+    let plain = whole.each_ref().map(without_regions_before_lines);
+    for document in whole.into_iter().chain(plain) {
+        // `results` panics at a value too few or too many.
         let mut run = Run::new(scenario(&document, &[]).unwrap()).unwrap();
         run.simulation.evaluate().unwrap();
         run.measure();

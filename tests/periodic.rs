@@ -8,7 +8,7 @@ use sandbox::engine::neighbors::{ListPolicy, Neighbors, Ranges, SKIN};
 use sandbox::engine::period::{Axis, Period};
 use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::engine::simulation::Simulation;
-use sandbox::scenario::catalog::NAMES;
+use sandbox::scenario::catalog::{NAMES, WalkingLawKind};
 use serde_json::json;
 
 fn along_x(from: f64, length: f64) -> Period {
@@ -78,12 +78,9 @@ fn the_density_of_a_lattice_is_the_same_everywhere() {
 
 #[test]
 fn forces_are_those_in_the_middle_of_three_crowds() {
-    let laws = ["headway", "density-ahead", "drag", "headings"].map(|law| ("sph", law));
-    for (profile, law) in NAMES
-        .map(|profile| (profile, "none"))
-        .into_iter()
-        .chain(laws)
-    {
+    let lawless = NAMES.map(|profile| (profile, WalkingLawKind::None));
+    let lawful = WalkingLawKind::laws().map(|law| ("sph", law));
+    for (profile, law) in lawless.into_iter().chain(lawful) {
         for axis in ["x", "y"] {
             let [one, three] = [true, false].map(|periodic| {
                 let mut document = corridor(profile, axis, periodic);

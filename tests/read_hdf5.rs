@@ -1,5 +1,8 @@
 //! Trajectories in HDF5 as the Pedestrian Dynamics Data Archive has them, valid and broken.
 
+use std::fs;
+
+use crate::common::program::{refused, run_json};
 use crate::common::vector;
 use hdf5_pure::{AttrValue, CompoundTypeBuilder, Datatype, FileBuilder};
 use sandbox::scenario::trajectories::{ReadOptions, Tracks, read};
@@ -36,8 +39,8 @@ fn wide(rows: &[(i64, i64, f64, f64)]) -> Records {
     }
 }
 
-/// Reads a file of these records; the folder is removed from error messages.
-fn read_records(records: &Records, fps: Option<f64>) -> Result<Tracks, String> {
+/// A file of these records.
+fn written(records: &Records, fps: Option<f64>) -> Vec<u8> {
     let mut file = FileBuilder::new();
     let dataset = file.create_dataset("trajectory").with_compound_data(
         records.datatype.clone(),
@@ -48,13 +51,18 @@ fn read_records(records: &Records, fps: Option<f64>) -> Result<Tracks, String> {
         dataset.set_attr("fps", AttrValue::F64(fps));
     }
     file.set_attr("wkt_geometry", AttrValue::String(PLAN.to_owned()));
-    read_bytes(&file.finish().unwrap())
+    file.finish().unwrap()
+}
+
+/// Reads a file of these records; the folder is removed from error messages.
+fn read_records(records: &Records, fps: Option<f64>) -> Result<Tracks, String> {
+    read_bytes(&written(records, fps))
 }
 
 fn read_bytes(bytes: &[u8]) -> Result<Tracks, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.h5");
-    std::fs::write(&path, bytes).unwrap();
+    fs::write(&path, bytes).unwrap();
     let folder = format!("{}/", folder.path().display());
     read(&path, &PLAIN).map_err(|error| error.to_string().replace(&folder, ""))
 }
@@ -71,6 +79,19 @@ fn records_frame_rate_and_walkable_area_are_read() {
     assert_eq!(tracks.position[0], vector(0.25, 4.0));
     assert_eq!(tracks.walkable, [PLAN]);
     assert!(tracks.notes.is_empty(), "{:?}", tracks.notes);
+}
+
+#[test]
+fn people_are_drawn_and_have_no_other_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, picture] = ["run.hdf5", "run.png"].map(|name| folder.path().join(name));
+    let rows = wide(&[(7, 0, 1.5, 2.5), (3, 0, 0.25, 4.0), (7, 1, 1.75, 2.5)]);
+    fs::write(&file, written(&rows, Some(12.5))).unwrap();
+    let [file, picture] = [&file, &picture].map(|path| path.to_str().unwrap());
+    let drawn = run_json(&["draw", file, "--out", picture, "--json"]);
+    assert_eq!(drawn["agents"], 2);
+    let colored = ["draw", file, "--out", picture, "--force", "--color", "lean"];
+    refused(&colored, 2, &["lean"]);
 }
 
 #[test]

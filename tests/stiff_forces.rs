@@ -17,7 +17,6 @@ use sandbox::engine::simulation::Simulation;
 use sandbox::engine::stability::time_step;
 use sandbox::scenario::catalog::{NAMES, Parameters, WalkingLawKind};
 use sandbox::scenario::schema;
-use serde::Deserialize;
 
 /// Pulls every agent to the x axis and brakes it.
 #[derive(Debug, Clone, Copy)]
@@ -88,7 +87,7 @@ const MORE: f64 = 1e6;
 fn stiff(term: Term) -> Vec<Parameters> {
     let stiff = match term {
         Term::Goal => ("goal_scale", MUCH),
-        Term::Walking => return laws().into_iter().map(walking).collect(),
+        Term::Walking => return WalkingLawKind::laws().map(walking).collect(),
         Term::SocialAgents => ("agent_strength", MORE),
         Term::SocialWalls => ("wall_strength", MORE),
         Term::Rvo => return Vec::new(),
@@ -98,17 +97,6 @@ fn stiff(term: Term) -> Vec<Parameters> {
         Term::ContactWalls => ("wall_stiffness", MORE),
     };
     vec![Parameters::of([stiff]).unwrap()]
-}
-
-/// All walking laws: those that scenarios can name.
-fn laws() -> Vec<WalkingLawKind> {
-    let schema = schema();
-    let kinds = schema["$defs"]["WalkingLawKind"]["oneOf"].as_array();
-    let words = kinds.unwrap().iter().map(|kind| &kind["const"]);
-    let laws = words.map(|word| WalkingLawKind::deserialize(word).unwrap());
-    let laws: Vec<_> = laws.filter(|law| *law != WalkingLawKind::None).collect();
-    assert!(laws.len() > 2, "{laws:?}");
-    laws
 }
 
 /// A walking law that brakes much sooner than by default.

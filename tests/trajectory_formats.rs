@@ -3,11 +3,14 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use crate::common::program::{run, stderr};
 use crate::common::{blend, scene, vector, walker};
 use sandbox::engine::clock::Clock;
 use sandbox::engine::scene::Region;
 use sandbox::engine::simulation::Simulation;
 use sandbox::output::trajectory::{Format, Trajectory, TrajectoryError, frames_between};
+use sandbox::scenario::kinds::of_name;
+use sandbox::scenario::trajectories::ENDINGS;
 
 #[test]
 fn a_rate_that_is_no_whole_part_names_the_nearest_that_is() {
@@ -35,6 +38,41 @@ fn the_format_is_in_the_extension() {
     assert_eq!(format("run.csv"), Ok(Format::Csv));
     for name in ["run.h5", "run", "run.csv.gz", "csv"] {
         assert!(format(name).is_err(), "{name}");
+    }
+}
+
+#[test]
+fn every_command_takes_a_file_with_a_known_ending_for_trajectories() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let [picture, page, measured] = ["a.svg", "a.html", "measured"].map(path);
+    for ending in ENDINGS {
+        let missing = path(&format!("missing.{ending}"));
+        for typed in [
+            &["draw", &missing, "--out", &picture][..],
+            &["draw", &missing, "--egress", "--out", &picture],
+            &["draw", &missing, "--out", &page],
+            &["page", &missing, "--out", &page],
+            &["measure", &missing, "--out", &measured],
+        ] {
+            let output = run(typed);
+            let said = stderr(&output);
+            let begins = format!("error: {missing}: cannot be read: ");
+            assert_eq!(output.status.code(), Some(2), "{typed:?}: {said}");
+            assert!(said.starts_with(&begins), "{typed:?}: {said}");
+            assert!(!said.contains("`sandbox"), "{typed:?}: {said}");
+        }
+    }
+}
+
+#[test]
+fn trajectories_in_place_of_a_scenario_are_known_by_their_ending() {
+    for ending in ENDINGS {
+        let what = of_name(&Path::new("run").with_extension(ending));
+        match ending {
+            "txt" => assert_eq!(what, None), // may be a scenario or a plan
+            _ => assert!(what.is_some_and(|what| what.contains("a run that is over"))),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Walking laws: what slows agents because of the crowd ahead.
 
-use crate::common::walking::{LOOKING, anticipating, crowd, walking, with};
+use crate::common::walking::{anticipating, crowd, looking, walking, with};
 use crate::common::{blend_with, evaluated, person, run, scene, state, vector, walker};
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::forces::drag::Drag;
@@ -26,18 +26,26 @@ fn lowered(simulation: &Simulation, law: WalkingLawKind, i: usize) -> f64 {
         let other = direction(frame.fields.preferred_velocity[j]);
         [relative.dot(&heading), other.dot(&heading)]
     };
-    if law == WalkingLawKind::Headway {
-        let headway = anticipating();
-        let range = headway.range(free);
-        let distances = others
-            .map(|(j, along, across)| headway.distance_in_lane(range, [along, across], motion(j)));
-        return headway.speed(free, distances.fold(range, f64::min));
+    match law {
+        WalkingLawKind::Headway => {
+            let headway = anticipating();
+            let range = headway.range(free);
+            let distances = others.map(|(j, along, across)| {
+                headway.distance_in_lane(range, [along, across], motion(j))
+            });
+            headway.speed(free, distances.fold(range, f64::min))
+        }
+        WalkingLawKind::DensityAhead => {
+            let kernel = |(j, along, across)| {
+                let counts = (1.0 + 4.0 * motion(j)[1].min(0.0)).max(0.0);
+                frame.agents.mass[j] * counts * DensityAhead::kernel(along, across, 1.0)
+            };
+            DensityAhead::default().speed(free, others.map(kernel).sum())
+        }
+        WalkingLawKind::None | WalkingLawKind::Drag | WalkingLawKind::Headings => {
+            unreachable!("{law:?} does not lower the preferred speed")
+        }
     }
-    let kernel = |(j, along, across)| {
-        let counts = (1.0 + 4.0 * motion(j)[1].min(0.0)).max(0.0);
-        frame.agents.mass[j] * counts * DensityAhead::kernel(along, across, 1.0)
-    };
-    DensityAhead::default().speed(free, others.map(kernel).sum())
 }
 
 /// The largest error of the sums, relative to the preferred velocity over τ m.
@@ -65,7 +73,7 @@ fn largest_error(law: WalkingLawKind, precision: Precision) -> f64 {
 
 #[test]
 fn vector_sums_equal_sums_agent_by_agent() {
-    for law in LOOKING {
+    for law in looking() {
         let error = largest_error(law, Precision::Double);
         assert!(error < 1e-12, "{law:?}: {error:e}");
     }
@@ -73,7 +81,7 @@ fn vector_sums_equal_sums_agent_by_agent() {
 
 #[test]
 fn mixed_precision_changes_walking_by_less_than_a_hundred_thousandth() {
-    for law in LOOKING {
+    for law in looking() {
         let error = largest_error(law, Precision::Mixed);
         assert!(error < 1e-5 && error > 0.0, "{law:?}: {error:e}");
     }
@@ -99,7 +107,7 @@ fn lone_agents_and_agents_with_others_behind_or_beside_walk_freely() {
         vector(1.2, 0.0),
     ];
     for precision in [Precision::Double, Precision::Mixed] {
-        for law in LOOKING.into_iter().chain([WalkingLawKind::Drag]) {
+        for law in looking().chain([WalkingLawKind::Drag]) {
             for others in [&[][..], &out_of_view[..]] {
                 let simulation = among(law, others, precision);
                 assert_eq!(walking(&simulation, 0), Vector::zeros(), "{law:?}");
@@ -114,7 +122,7 @@ fn lone_agents_and_agents_with_others_behind_or_beside_walk_freely() {
 
 #[test]
 fn agents_that_come_towards_do_not_count() {
-    for law in LOOKING {
+    for law in looking() {
         let met = |heading: f64| {
             let mut scene = scene(vec![], blend_with("sph", &with(law)));
             let place = vector(0.6, 0.0);
@@ -221,7 +229,7 @@ fn a_single_file_keeps_the_distance_of_its_speed() {
 
 #[test]
 fn turned_and_mirrored_crowds_lose_the_same_speeds() {
-    for law in LOOKING {
+    for law in looking() {
         let original = evaluated(crowd(law, 4));
         for map in [perpendicular, |v: Vector| vector(v.x, -v.y)] {
             let mut scene = crowd(law, 4);

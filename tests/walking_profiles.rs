@@ -1,6 +1,6 @@
 //! Walking laws in profiles: beside the goal force and RVO, in blends, on many threads, in resumed runs.
 
-use crate::common::walking::{LOOKING, crowd, walking, with};
+use crate::common::walking::{crowd, walking, with};
 use crate::common::{
     acceleration, bits, blend_with, block, breakdown, evaluated, on_threads, room, run, scene,
     vector, walker,
@@ -152,7 +152,7 @@ fn agents_hold_their_speed_until_the_next_coarse_frame() {
 
 #[test]
 fn a_lane_with_a_law_is_the_same_on_any_number_of_threads() {
-    for law in LOOKING.into_iter().chain([WalkingLawKind::Headings]) {
+    for law in WalkingLawKind::laws() {
         let simulated = |threads| {
             on_threads(threads, || {
                 let mut scene = scene(vec![room(12.0, 1.2)], blend_with("rvo->sph", &with(law)));
@@ -169,7 +169,7 @@ fn a_lane_with_a_law_is_the_same_on_any_number_of_threads() {
 
 #[test]
 fn a_resumed_run_with_a_law_goes_on_with_the_same_bits() {
-    for law in [WalkingLawKind::Headway, WalkingLawKind::Headings] {
+    for law in WalkingLawKind::laws() {
         let scene = crowd(law, 9);
         let mut whole = Simulation::new(scene.clone()).unwrap();
         run(&mut whole, 17);

@@ -20,12 +20,14 @@ use runs::outputs::Outputs;
 use scenario::input;
 use scenario::kinds::is_scenario;
 use scenario::quote::shown;
-use scenario::trajectories::{ReadOptions, Tracks};
+use scenario::trajectories::{ReadOptions, Tracks, endings};
 
 #[derive(Args)]
 pub struct CompareOptions {
-    /// A: the result of a run or an estimate as --json printed it, a recording (.rrd), or trajectories (SQLite, text,
-    /// CSV)
+    #[arg(help = format!(
+        "A: the result of a run or an estimate as --json printed it, a recording (.rrd), or trajectories ({})",
+        endings()
+    ))]
     pub a: PathBuf,
     /// B: a file of the same kind; a result and a recording can be compared, too
     pub b: PathBuf,

@@ -17,6 +17,7 @@ use output::page::{EmbeddedViewer, Moment, Page, PageOptions as Content};
 use output::picture::{Crowd, Picture};
 use output::results::{pairs, reproducible, results, section};
 use runs::outputs::{Manner, Outputs};
+use scenario::trajectories::endings;
 
 /// Where densities come from, in words.
 const DENSITIES: &str =
@@ -24,8 +25,10 @@ const DENSITIES: &str =
 
 #[derive(Args)]
 pub struct PageOptions {
-    /// A recording (.rrd) or trajectories (.sqlite, .db, .txt, .csv, .h5), of the sandbox, JuPedSim or others
-    #[arg(value_name = "RUN")]
+    #[arg(
+        value_name = "RUN",
+        help = format!("A recording (.rrd) or trajectories ({}), of the sandbox, JuPedSim or others", endings())
+    )]
     pub run: PathBuf,
     /// The page [default: the run's name with .html, in the working directory]
     #[arg(short, long, value_name = "FILE", value_parser = page())]

@@ -18,9 +18,11 @@ mod error;
 
 pub mod input;
 
-pub mod floor_plan;
-
 pub mod trajectories;
+
+pub mod kinds;
+
+pub mod floor_plan;
 
 mod keys;
 
@@ -32,7 +34,6 @@ mod scene;
 
 mod read;
 
-pub use error::kinds;
 pub use error::numbers::tidy;
 pub use error::{Problem, ScenarioError, in_plain_words, quote, suggestion};
 pub use file::Stop;

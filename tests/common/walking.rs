@@ -13,8 +13,13 @@ use serde_json::json;
 
 use super::{blend_with, breakdown, scene, vector};
 
-/// The laws that lower the preferred speed.
-pub const LOOKING: [WalkingLawKind; 2] = [WalkingLawKind::Headway, WalkingLawKind::DensityAhead];
+/// The laws that look ahead and choose no heading: they lower the preferred speed.
+pub fn looking() -> impl Iterator<Item = WalkingLawKind> {
+    WalkingLawKind::laws().filter(|law| match law {
+        WalkingLawKind::Headway | WalkingLawKind::DensityAhead => true,
+        WalkingLawKind::None | WalkingLawKind::Drag | WalkingLawKind::Headings => false,
+    })
+}
 
 pub fn with(law: WalkingLawKind) -> Parameters {
     Parameters::default()

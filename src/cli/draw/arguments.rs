@@ -9,11 +9,14 @@ use crate::cli::arguments::SceneOptions;
 use crate::cli::values::{
     Width, dpi, frame_rate, millimeters, picture, positive_seconds, range, seconds, width,
 };
+use scenario::trajectories::endings;
 
 #[derive(Args)]
 pub struct DrawOptions {
-    /// A built-in scenario, a scenario file, trajectories (.sqlite, .txt, .csv), or a recording (.rrd)
-    #[arg(value_name = "RUN")]
+    #[arg(
+        value_name = "RUN",
+        help = format!("A built-in scenario, a scenario file, trajectories ({}), or a recording (.rrd)", endings())
+    )]
     pub run: String,
     #[command(flatten)]
     pub scene: SceneOptions,

@@ -13,6 +13,7 @@ use lab::egress::Egress;
 use runs::case::Source;
 use runs::drive::Run;
 use runs::outputs::{Manner, Outputs};
+use scenario::trajectories;
 
 /// Draws the curve, and prints the table.
 pub fn draw(options: &DrawOptions, out: &Path, mut outputs: Outputs) -> Result<(), Failure> {
@@ -25,7 +26,7 @@ pub fn draw(options: &DrawOptions, out: &Path, mut outputs: Outputs) -> Result<(
                 options.run
             )));
         }
-        "sqlite" | "db" | "txt" | "csv" | "h5" | "hdf5" => {
+        _ if trajectories::has_ending(path) => {
             refuse_settings(options, &options.scene)?;
             outputs.reads("the trajectories", path);
             outputs.check()?;

@@ -29,6 +29,7 @@ use look::{Look, NONE};
 use output::picture::{Paths, Picture, Trails};
 use output::plot::{Animation, PAPER_DPI, Print};
 use runs::outputs::{Manner, Outputs};
+use scenario::trajectories;
 
 /// The width of pictures without another one, millimeters: two columns of a paper.
 const WIDTH_MM: f64 = 180.0;
@@ -206,7 +207,7 @@ fn open(
             outputs.reads("the recording", path);
             recorded::open(path)?
         }
-        "sqlite" | "db" | "txt" | "csv" => {
+        _ if trajectories::has_ending(path) => {
             refuse_settings(options, &options.scene)?;
             let read = read_options(&options.unit, options.trajectory_fps);
             let plan = options.scene.geometry.as_deref();

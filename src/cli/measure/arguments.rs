@@ -12,10 +12,15 @@ use crate::cli::values::{
 };
 use analysis::crossing::{Line, Passages};
 use engine::scene::Region;
+use scenario::trajectories::endings;
 
 #[derive(Args)]
 pub struct MeasureOptions {
-    /// Trajectories: JuPedSim's SQLite, HDF5 of the Pedestrian Dynamics Data Archive, text (id frame x y), or .csv
+    #[arg(help = format!(
+        "Trajectories ({}): JuPedSim's SQLite, HDF5 of the Pedestrian Dynamics Data Archive, CSV, or text (id frame x \
+         y)",
+        endings()
+    ))]
     pub trajectory: PathBuf,
     /// Walkable area: a WKT, GeoJSON or JuPedSim XML file, or `none` for no walls [default: that of an SQLite or HDF5
     /// file, else none]

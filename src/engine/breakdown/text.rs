@@ -92,7 +92,11 @@ impl Breakdown {
                 "  quickest route: {}; compared again at {:.2} s, changed {} times",
                 choice.reason, choice.again_at_secs, choice.changes
             )?,
-            false => writeln!(f, "  routes out of the room: {}", choice.reason)?,
+            false => writeln!(
+                f,
+                "  routes out of the room: {}; changed {} times",
+                choice.reason, choice.changes
+            )?,
         }
         for way in &choice.routes {
             let flow = way.flow_per_sec.map_or(String::new(), |flow| {

@@ -58,7 +58,7 @@ pub enum BlendError {
     DifferentRvo,
     /// Two profiles have different walking laws.
     #[error(
-        "profiles of one blend share one walking law: give those with `headway`, `density-ahead` or `headings` the \
+        "profiles of one blend share one walking law that looks ahead: give all that have one the same law with the \
          same parameters"
     )]
     DifferentLaws,

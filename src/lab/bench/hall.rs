@@ -6,6 +6,7 @@ use super::timing::{failed, ms_per_frame};
 use crate::error::LabError;
 use engine::simulation::Simulation;
 use scenario::Scenario;
+use scenario::catalog::WalkingLawKind;
 
 /// The distances between the middles of pillars, meters.
 const PITCH: [f64; 2] = [7.0, 8.5];
@@ -27,7 +28,7 @@ const LOBBY: f64 = 24.0;
 pub fn settled(
     [columns, rows]: [u32; 2],
     frames: u64,
-    walking_law: &str,
+    walking_law: WalkingLawKind,
 ) -> Result<Simulation, LabError> {
     let mut document = scenario(columns, rows);
     document["parameters"] = json!({ "walking_law": walking_law });

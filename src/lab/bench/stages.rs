@@ -21,6 +21,7 @@ use engine::clock::PAPER_TIME_STEP;
 use engine::simulation::{Simulation, Stage, StageTimes};
 use output::plot::{Axis, BLACK, Mark, Sheet};
 use output::table::Table;
+use scenario::catalog::WalkingLawKind;
 use scenario::measurements::{Measurement, Metrics};
 use scenario::{Scenario, Setting, built_in, floor_plan};
 
@@ -56,9 +57,6 @@ const QUICK_STRETCH: (f64, f64) = (0.1, 0.2);
 /// The stretch of people who sway on 50 m × 20 m, and their profiles.
 const SWAY: Stretch = ("questions/sway", 60.0, 20.0);
 const SWAYING: [&str; 3] = ["sph", "legs", "legs+sph"];
-
-/// The walking laws of the hall.
-const LAWS: [&str; 5] = ["none", "headway", "headings", "density-ahead", "drag"];
 
 /// The stretches of a plan: all, or the first if the plan is quick.
 pub fn busiest(plan: &Plan) -> &'static [Stretch] {
@@ -193,17 +191,22 @@ impl Sizes {
         })
     }
 
-    fn halls(&self, say: &dyn Fn(&str)) -> [Result<Started, LabError>; LAWS.len()] {
-        LAWS.map(|law| {
-            say(&format!("hall with pillars, walking law {law}"));
+    /// Without and with each walking law.
+    fn halls(&self, say: &dyn Fn(&str)) -> Vec<Result<Started, LabError>> {
+        let kinds = std::iter::once(WalkingLawKind::None).chain(WalkingLawKind::laws());
+        let hall = |law: WalkingLawKind| {
+            let word = json!(law);
+            let name = word.as_str().unwrap_or_default();
+            say(&format!("hall with pillars, walking law {name}"));
             let profile = match law {
-                "none" => "sph".to_owned(),
-                law => format!("sph, {law}"),
+                WalkingLawKind::None => "sph".to_owned(),
+                _ => format!("sph, {name}"),
             };
             let simulation = hall::settled(self.bays, self.before, law)?;
-            let name = "hall with pillars";
-            Ok(Started::settled(name, &profile, simulation, self.walking))
-        })
+            let crowd = "hall with pillars";
+            Ok(Started::settled(crowd, &profile, simulation, self.walking))
+        };
+        kinds.map(hall).collect()
     }
 
     fn offices(&self, say: &dyn Fn(&str)) -> [Result<Started, LabError>; 2] {
@@ -266,12 +269,12 @@ impl Started {
 }
 
 /// Measures crowds, which take turns.
-fn in_turns<const N: usize>(
-    started: [Result<Started, LabError>; N],
+fn in_turns(
+    started: impl IntoIterator<Item = Result<Started, LabError>>,
     plan: &Plan,
 ) -> Result<Vec<Divided>, LabError> {
     let started: Vec<Started> = started.into_iter().collect::<Result<_, _>>()?;
-    let mut times = vec![Vec::with_capacity(plan.repeats); N];
+    let mut times = vec![Vec::with_capacity(plan.repeats); started.len()];
     for _ in 0..plan.repeats {
         for (started, times) in started.iter().zip(&mut times) {
             times.push(replay(started)?);

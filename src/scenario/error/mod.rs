@@ -1,7 +1,6 @@
 //! Errors in scenarios, with their places.
 
 pub mod hints;
-pub mod kinds;
 pub mod numbers;
 pub mod quote;
 

@@ -1,8 +1,8 @@
 //! GeoJSON (RFC 7946), in meters. The only file that names the geojson crate.
 
-use crate::error::kinds;
 use crate::error::quote::shown;
 use crate::error::suggestion;
+use crate::kinds;
 use geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
 use serde_json::Value;
 

@@ -11,8 +11,8 @@
 //! does not depend on how a plan is cut into pieces.
 //! Orientation, third coordinates, a closing point and repeated points do not matter.
 
-use crate::error::kinds;
 use crate::input;
+use crate::kinds;
 mod boundary;
 mod error;
 mod geojson;

@@ -21,7 +21,7 @@ pub struct FromData {
     /// The name in reports. Default: `from`.
     #[schemars(length(min = 1))]
     pub name: Option<String>,
-    /// The trajectory file, relative to this file's folder: SQLite (JuPedSim), CSV or text.
+    /// The trajectory file, relative to this file's folder: SQLite (JuPedSim), HDF5, CSV or text.
     #[schemars(length(min = 1))]
     pub trajectory: Option<String>,
     /// With `trajectory`: the time in the file at which the scenario begins, seconds; frame f is at f / `fps`. Before

@@ -67,6 +67,15 @@ pub enum WalkingLawKind {
     Headings,
 }
 
+impl WalkingLawKind {
+    /// All laws, that is, every kind but [`None`](Self::None), in the order of their declaration.
+    pub fn laws() -> impl Iterator<Item = Self> {
+        let named = |name: &&str| Self::deserialize(json!(name)).ok();
+        let kinds = names::<Self>().iter().filter_map(named);
+        kinds.filter(|kind| *kind != Self::None)
+    }
+}
+
 /// The kind of navigation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -277,6 +286,20 @@ mod tests {
             let is_number = property["type"][0] == "number";
             assert!(!is_number || property["minimum"].is_number(), "{name}");
         }
+    }
+
+    #[test]
+    fn every_walking_law_is_listed() {
+        let schema = schemars::schema_for!(WalkingLawKind).to_value();
+        let kinds = schema["oneOf"].as_array().unwrap().iter();
+        let laws = kinds
+            .map(|kind| &kind["const"])
+            .filter(|law| **law != "none");
+        assert!(
+            laws.eq(&WalkingLawKind::laws()
+                .map(|law| json!(law))
+                .collect::<Vec<_>>())
+        );
     }
 
     #[test]

@@ -128,19 +128,23 @@ impl Measure for LineFlow {
         let flow = format!("passages per second {part}");
         let density = format!("people in the region / its walkable area, mean {part}");
         let speed = format!("mean speed in the region {part}");
-        let values = [
+        let at_line = [
             (
                 "passages",
                 "agents",
                 "passages of the line in the whole run, in either direction",
             ),
             ("flow_per_s", "P/s", &flow),
-            ("density_per_m2", "P/m²", &density),
+        ];
+        let in_region = [
+            ("density_per_m2", "P/m²", density.as_str()),
             ("speed_m_per_s", "m/s", &speed),
         ];
-        // Density and speed are those in the region.
-        let count = if self.region.is_some() { 4 } else { 2 };
-        Quantity::all(self.name(), &values[..count])
+        let mut all = Quantity::all(self.name(), &at_line);
+        if self.region.is_some() {
+            all.extend(Quantity::all(self.name(), &in_region));
+        }
+        all
     }
 
     fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
@@ -233,8 +237,8 @@ impl LineFlow {
             };
             self.see(&mut seen, &moment, std::iter::empty(), there);
         }
-        let names = self.quantities().into_iter().map(|one| one.name);
-        let values = names.zip(self.results(&seen, scene)).collect();
+        let measured = Quantity::paired(self.quantities(), self.results(&seen, scene));
+        let values = measured.map(|(one, value)| (one.name, value)).collect();
         (values, (self.name().to_owned(), json!(seen.times)))
     }
 
@@ -301,7 +305,6 @@ impl LineFlow {
 
     fn results(&self, seen: &Seen, scene: &Scene) -> Vec<Option<f64>> {
         let flow = self.flow(&seen.times);
-        let region = self.region.map(Region::from);
         let ends = flow.map_or([f64::NAN; 2], |(ends, _)| ends);
         let all = seen.samples.iter();
         let samples = all.filter(|sample| (ends[0]..=ends[1]).contains(&sample.time));
@@ -312,13 +315,14 @@ impl LineFlow {
             moving += f64::from(sample.moving);
             speeds += sample.speeds;
         }
-        vec![
-            Some(seen.times.len() as f64),
-            flow.map(|(_, flow)| flow),
-            region
-                .filter(|_| count > 0.0)
-                .map(|region| agents / (count * walkable_area(region, scene))),
-            (moving > 0.0).then(|| speeds / moving),
-        ]
+        let mut values = vec![Some(seen.times.len() as f64), flow.map(|(_, flow)| flow)];
+        if let Some(region) = self.region {
+            let area = || walkable_area(region.into(), scene);
+            values.extend([
+                (count > 0.0).then(|| agents / (count * area())),
+                (moving > 0.0).then(|| speeds / moving),
+            ]);
+        }
+        values
     }
 }

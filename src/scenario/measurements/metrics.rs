@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::overview::Overview;
 use super::running::Running;
 use super::stuck::{self, Stuck};
-use super::{HighestDensity, LongestQueue, Measure, Measurement, StuckGroup};
+use super::{HighestDensity, LongestQueue, Measure, Measurement, Quantity, StuckGroup};
 use crate::error::quote::shown_message;
 use engine::simulation::Simulation;
 
@@ -91,9 +91,8 @@ impl Metrics {
     /// The values measured so far.
     pub fn results(&self, simulation: &Simulation) -> Vec<Metric> {
         let measured = self.running.iter().enumerate().flat_map(|(k, running)| {
-            let quantities = running.quantities().into_iter();
-            let values = running.values(simulation);
-            quantities.zip(values).map(move |(quantity, value)| Metric {
+            let measured = Quantity::paired(running.quantities(), running.values(simulation));
+            measured.map(move |(quantity, value)| Metric {
                 name: quantity.name,
                 measurement: k,
                 value,

@@ -80,8 +80,8 @@ impl Push {
             every,
             people: (0..tracks.ids.len()).filter_map(places).collect(),
         };
-        let names = self.quantities().into_iter().map(|quantity| quantity.name);
-        names.zip(self.results(&seen)).collect()
+        let measured = Quantity::paired(self.quantities(), self.results(&seen));
+        measured.map(|(one, value)| (one.name, value)).collect()
     }
 
     fn results(&self, seen: &Seen) -> Vec<Option<f64>> {

@@ -42,6 +42,24 @@ impl Quantity {
         }
     }
 
+    /// Quantities, each with its value.
+    ///
+    /// # Panics
+    /// There are not as many values as quantities: those at the end would get lost, or stand beside a wrong name.
+    pub(super) fn paired(
+        quantities: Vec<Self>,
+        values: Vec<Option<f64>>,
+    ) -> impl Iterator<Item = (Self, Option<f64>)> {
+        let names = || -> Vec<&str> { quantities.iter().map(|one| one.name.as_str()).collect() };
+        assert_eq!(
+            quantities.len(),
+            values.len(),
+            "`values` must have one value for each of `quantities`, {:?}",
+            names()
+        );
+        quantities.into_iter().zip(values)
+    }
+
     /// Quantities whose names begin with that of the measurement.
     pub(super) fn all(of: &str, quantities: &[(&str, &'static str, &str)]) -> Vec<Self> {
         let quantity = |&(what, unit, meaning): &(&str, _, &str)| {

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::aim::Aim;
-use super::lines::{Lines, Outside};
 use super::passages::{Crossing, Known, Openings};
+use super::queue_lines::{Lines, Outside};
 use super::standing::{is_slow, length};
 use super::stuck::Headway;
 use crate::error::quote::{shown, to_centimeters};

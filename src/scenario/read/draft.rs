@@ -4,10 +4,10 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::error::kinds;
 use crate::error::numbers::tidy;
 use crate::error::{Problem, ScenarioError};
 use crate::file::File;
+use crate::kinds;
 use crate::read::plans::PlanFile;
 use crate::read::scenario::Scenario;
 use crate::read::setting::Setting;

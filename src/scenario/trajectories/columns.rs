@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::error::ReadError;
 use super::line::Columns;
-use super::{Tracks, is_csv};
+use super::{Format, Tracks, open};
 
 /// Columns that are not values of people.
 const OTHERS: [&str; 8] = ["id", "frame", "time", "x", "y", "pos_x", "pos_y", "z"];
@@ -23,16 +23,18 @@ pub struct Column {
 /// A row's person and frame, and its values.
 type Row = (i64, i64, Vec<f64>);
 
-/// The columns with values of people of a CSV or SQLite file; the values of `wanted` and of the radius are read. Text
-/// files have no such columns.
+/// The columns with values of people of a CSV or SQLite file; the values of `wanted` and of the radius are read. Of
+/// files in HDF5 and text only positions are read.
 ///
 /// # Errors
 /// The file cannot be read.
 pub fn columns(path: &Path, wanted: &[&str], tracks: &Tracks) -> Result<Vec<Column>, ReadError> {
-    let is_csv = is_csv(path);
-    let mut names = match is_csv {
-        true => csv_names(path)?,
-        false => sqlite_names(path),
+    let (_, start) = open(path)?;
+    let format = Format::of(path, &start);
+    let mut names = match format {
+        Format::Csv => csv_names(path)?,
+        Format::Sqlite => sqlite_names(path),
+        Format::Hdf5 | Format::Text => Vec::new(),
     };
     names.retain(|name| !OTHERS.contains(&name.as_str()));
     let read = |name: &&String| wanted.contains(&name.as_str()) || *name == "radius";
@@ -40,9 +42,10 @@ pub fn columns(path: &Path, wanted: &[&str], tracks: &Tracks) -> Result<Vec<Colu
     let values = match needed.is_empty() {
         true => Vec::new(),
         false => {
-            let rows = match is_csv {
-                true => csv_rows(path, &needed)?,
-                false => sqlite_rows(path, &needed)?,
+            let rows = match format {
+                Format::Csv => csv_rows(path, &needed)?,
+                Format::Sqlite => sqlite_rows(path, &needed)?,
+                Format::Hdf5 | Format::Text => Vec::new(),
             };
             in_order(rows, needed.len(), tracks)
         }

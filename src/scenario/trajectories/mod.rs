@@ -34,6 +34,12 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// The endings of trajectory files. A command that reads scenarios, too, tells both apart by them; others read files
+/// of any name.
+pub const ENDINGS: [&str; 6] = ["sqlite", "db", "h5", "hdf5", "csv", "txt"];
+
+/// The first bytes of an SQLite file.
+const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";
 /// The first bytes of an HDF5 file.
 const HDF5_MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// The first bytes of a Rerun recording.
@@ -98,36 +104,60 @@ impl ReadOptions {
     }
 }
 
+/// The formats.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Sqlite,
+    Hdf5,
+    Csv,
+    Text,
+}
+
+impl Format {
+    /// The format of a file, by the bytes with which it starts; that of a text by its ending.
+    fn of(path: &Path, start: &[u8]) -> Self {
+        let extension = path.extension().unwrap_or_default();
+        if start.starts_with(SQLITE_MAGIC) {
+            Self::Sqlite
+        } else if start.starts_with(HDF5_MAGIC) {
+            Self::Hdf5
+        } else if extension.eq_ignore_ascii_case("csv") {
+            Self::Csv
+        } else {
+            Self::Text
+        }
+    }
+}
+
+/// Whether the name of a file has one of [`ENDINGS`].
+pub fn has_ending(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default();
+    let mut endings = ENDINGS.iter();
+    endings.any(|ending| extension.eq_ignore_ascii_case(ending))
+}
+
+/// [`ENDINGS`] for a sentence.
+pub fn endings() -> String {
+    ENDINGS.map(|ending| format!(".{ending}")).join(", ")
+}
+
+/// Opens a file and reads the bytes with which it starts.
+fn open(path: &Path) -> Result<(File, Vec<u8>), ReadError> {
+    let begun = || -> std::io::Result<(File, Vec<u8>)> {
+        let (mut file, mut start) = (File::open(path)?, Vec::new());
+        let head = file.by_ref().take(SQLITE_MAGIC.len() as u64);
+        { head }.read_to_end(&mut start)?;
+        Ok((file, start))
+    };
+    begun().map_err(|error| ReadError::file(path, format!("cannot be read: {error}")))
+}
+
 /// Reads the trajectories in a file, whatever its format.
 ///
 /// # Errors
 /// The file cannot be read, or its content is invalid. The error names the line and a fix.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
-    let unopened =
-        |error: std::io::Error| ReadError::file(path, format!("cannot be read: {error}"));
-    let mut file = File::open(path).map_err(unopened)?;
-    let mut start = Vec::new();
-    let magic = b"SQLite format 3\0";
-    let head = file.by_ref().take(magic.len() as u64);
-    { head }.read_to_end(&mut start).map_err(unopened)?;
-    if start == magic {
-        #[cfg(feature = "program")]
-        return sqlite::read(path, options);
-        #[cfg(not(feature = "program"))]
-        return Err(ReadError::file(
-            path,
-            "a SQLite file, which is read with the feature `program` only; convert it to CSV",
-        ));
-    }
-    if start.starts_with(HDF5_MAGIC) {
-        #[cfg(feature = "program")]
-        return hdf5::read(path, options);
-        #[cfg(not(feature = "program"))]
-        return Err(ReadError::file(
-            path,
-            "an HDF5 file, which is read with the feature `program` only; convert it to CSV",
-        ));
-    }
+    let (file, start) = open(path)?;
     if start.starts_with(b"{") {
         return Err(ReadError::file(
             path,
@@ -140,7 +170,23 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
             "a recording has no trajectories to read; run its scenario again with --trajectory FILE",
         ));
     }
-    read_text(path, Read::chain(start.as_slice(), file), options)
+    match Format::of(path, &start) {
+        #[cfg(feature = "program")]
+        Format::Sqlite => sqlite::read(path, options),
+        #[cfg(feature = "program")]
+        Format::Hdf5 => hdf5::read(path, options),
+        #[cfg(not(feature = "program"))]
+        Format::Sqlite => Err(ReadError::file(
+            path,
+            "a SQLite file, which is read with the feature `program` only; convert it to CSV",
+        )),
+        #[cfg(not(feature = "program"))]
+        Format::Hdf5 => Err(ReadError::file(
+            path,
+            "an HDF5 file, which is read with the feature `program` only; convert it to CSV",
+        )),
+        Format::Csv | Format::Text => read_text(path, Read::chain(start.as_slice(), file), options),
+    }
 }
 
 /// Reads the trajectories in a text. Messages name `path`, and its extension gives the format.
@@ -148,16 +194,10 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
 /// # Errors
 /// Same as [`read`].
 pub fn read_text(path: &Path, text: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {
-    match is_csv(path) {
-        true => text::read_csv(path, text, options),
-        false => text::read_text(path, text, options),
+    match Format::of(path, b"") {
+        Format::Csv => text::read_csv(path, text, options),
+        Format::Text | Format::Sqlite | Format::Hdf5 => text::read_text(path, text, options),
     }
-}
-
-/// Whether the name of a file is that of comma-separated values.
-fn is_csv(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("csv"))
 }
 
 /// Parses the frame rate of a file and checks its range.

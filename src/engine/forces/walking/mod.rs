@@ -142,7 +142,9 @@ impl WalkingLaw {
         let (wide, narrow) = match self {
             Self::Headings(law) if due.meets => (law.view(), law.headway.view()),
             Self::Headings(law) => (law.view_of_one_way(), law.headway.view()),
-            _ => (View::default(), self.view(frame.neighbors.support())),
+            Self::Headway(_) | Self::DensityAhead(_) => {
+                (View::default(), self.view(frame.neighbors.support()))
+            }
         };
         let chooses = self.headings().is_some() && Headings::chooses(frame.clock);
         let all = (self.headings()).map_or([Vector::zeros(); COUNT], Headings::all_turned);

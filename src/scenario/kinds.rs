@@ -4,8 +4,10 @@ use std::path::Path;
 
 use serde_json::Value;
 
-/// Endings of files, with what they are.
-const ENDINGS: [(&[&str], &str); 4] = [
+use crate::trajectories;
+
+/// Endings of files that no command reads, with what they are.
+const ENDINGS: [(&[&str], &str); 3] = [
     (
         &["dxf", "dwg", "ifc"],
         "drawings of CAD programs are not read: make GeoJSON or WKT of it (docs/guide/recipes.md says how)",
@@ -18,16 +20,18 @@ const ENDINGS: [(&[&str], &str); 4] = [
         &["xlsx", "xls", "ods", "docx", "zip"],
         "this kind of file is not read: scenarios are JSON, plans WKT, GeoJSON or JuPedSim XML",
     ),
-    (
-        &["csv", "sqlite", "db", "h5", "rrd"],
-        "holds a run that is over: `sandbox measure` and `sandbox draw` read it, and a scenario takes its people with \
-         `from`",
-    ),
 ];
+/// What trajectories and recordings are.
+const RUN: &str = "holds a run that is over: `sandbox measure` and `sandbox draw` read it, and a scenario takes its \
+                   people with `from`";
 
 /// What a file with this name is, if it is neither a scenario nor a plan.
 pub fn of_name(path: &Path) -> Option<&'static str> {
     let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+    // Plans and scenarios may be text, too.
+    if ending == "rrd" || (trajectories::has_ending(path) && ending != "txt") {
+        return Some(RUN);
+    }
     let mut known = ENDINGS.iter();
     let found = known.find(|(endings, _)| endings.contains(&ending.as_str()));
     found.map(|(_, what)| *what)
