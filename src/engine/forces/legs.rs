@@ -21,8 +21,10 @@
 //! For points 2 and 4 the program JuPedSim has other rules (pull request 1613): a driving force on bodies alone, and
 //! legs that are put back under a body which leans too far.
 
+mod repulsion;
+
 use std::any::Any;
-use std::f64::consts::LOG2_E;
+use std::ops::Range;
 use std::sync::Arc;
 
 use schemars::JsonSchema;
@@ -30,13 +32,12 @@ use serde::{Deserialize, Serialize};
 
 use super::own::{Body, Force, Kept, Step};
 use super::rates::{Extremes, Rates};
-use crate::agents::Agents;
+use crate::agents::{Agents, States};
 use crate::clock::Integrator;
 use crate::frame::Frame;
 use crate::limits::{FARTHEST, STRONGEST};
 use crate::math::{Vector, clamp_length, direction};
-use crate::pairs::prelude::*;
-use crate::pairs::{Columns, LANES, Level, Real, Simd, dispatch, each, lanes_from, splat, store};
+use crate::neighbors::BLOCK;
 use crate::period::Axis;
 
 /// Parameters of the law.
@@ -151,10 +152,9 @@ impl Legs {
     }
 
     /// Falling, or balance: the acceleration of the body or of the legs of agent `i`, m/s².
-    fn balance(&self, frame: &Frame, i: usize, half: Half) -> Vector {
-        let agents = frame.agents;
-        let (r, v) = (agents.position[i], agents.velocity[i]);
-        let [y, w] = agents.state(NAME, i).map_or([r, v], parts);
+    fn balance(&self, frame: &Frame, i: usize, state: Option<&[f64]>, half: Half) -> Vector {
+        let (r, v) = (frame.agents.position[i], frame.agents.velocity[i]);
+        let [y, w] = state.map_or([r, v], parts);
         let lean = r - y;
         let e = lean / lean.norm().max(f64::MIN_POSITIVE);
         let aim = e * self.balance_speed + walk(v, frame.fields.preferred_velocity[i]);
@@ -171,34 +171,6 @@ impl Legs {
         }
     }
 
-    /// Σ A f(|d|, B) in the directions d of `ways`, m/s², for people of mass 1.
-    #[inline(always)]
-    fn pushes<R: Real, S: Simd>(
-        &self,
-        simd: S,
-        _precision: &Columns<R>,
-        half: Half,
-        ways: &[Vector],
-    ) -> Vector {
-        let range = self.range_of(half);
-        let per_range = splat::<R, S>(simd, -LOG2_E / range);
-        let at_reach = splat::<R, S>(simd, (-self.legs_reach / range).exp());
-        let (zero, tiny) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, R::TINY));
-        let mut sums = [zero; 2];
-        for ways in ways.chunks(LANES) {
-            let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
-            for (k, way) in ways.iter().enumerate() {
-                (x[k], y[k]) = (way.x, way.y);
-            }
-            let (x, y) = (lanes_from::<R, S>(simd, &x), lanes_from::<R, S>(simd, &y));
-            let distance = y.mul_add(y, x * x).max(tiny).sqrt();
-            let force = (R::exp2(simd, distance * per_range) - at_reach).max(zero) / distance;
-            sums = [force.mul_add(x, sums[0]), force.mul_add(y, sums[1])];
-        }
-        let [x, y] = sums.map(|sum| store::<R, S>(sum).iter().sum::<f64>());
-        Vector::new(x, y) * self.legs_strength
-    }
-
     /// A f(|d|, B) in the direction d, m/s², for people of mass 1.
     fn push(&self, half: Half) -> impl Fn(Vector) -> Vector {
         let range = self.range_of(half);
@@ -209,30 +181,6 @@ impl Legs {
             let force = strength * ((-distance / range).exp() - at_reach).max(0.0);
             d * (force / distance.max(f64::MIN_POSITIVE))
         }
-    }
-
-    /// The repulsion by other agents, m/s².
-    fn repulsion_by_agents(&self, frame: &Frame, i: usize, half: Half) -> Vector {
-        let agents = frame.agents;
-        let near = frame.near(i, self.legs_reach);
-        let ways: Vec<Vector> = match half {
-            Half::Body => near.map(|(_, r_ij)| r_ij).collect(),
-            Half::Legs => {
-                let states = agents.states_of(NAME);
-                let lean = |k: usize| {
-                    let state = states.and_then(|states| states.of(k));
-                    state.map_or(Vector::zeros(), |state| {
-                        agents.position[k] - parts(state)[0]
-                    })
-                };
-                let own = lean(i);
-                near.map(|(j, r_ij)| r_ij - (own - lean(j))).collect()
-            }
-        };
-        let sum = each!(frame.packed, columns => dispatch!(Level::new(), simd => {
-            self.pushes(simd, columns, half, &ways)
-        }));
-        sum / agents.mass[i]
     }
 
     /// The repulsion by walls, m/s². Walls act on legs if they are near the body.
@@ -261,15 +209,38 @@ impl Legs {
         sum / agents.mass[i]
     }
 
-    /// The accelerations by balance, by other agents and by walls, m/s².
-    fn accelerations(&self, frame: &Frame, i: usize, half: Half) -> [Vector; 3] {
-        let balance = self.balance(frame, i, half);
+    /// Passes `take` the accelerations by balance, by other agents and by walls, m/s², of each of `agents`, which are
+    /// of one block.
+    fn each_acceleration(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        half: Half,
+        mut take: impl FnMut(usize, [Vector; 3]),
+    ) {
+        let states = frame.agents.states_of(NAME);
+        let state = |i: usize| states.and_then(|states| states.of(i));
         if self.legs_strength == 0.0 {
-            return [balance, Vector::zeros(), Vector::zeros()];
+            for i in agents {
+                let balance = self.balance(frame, i, state(i), half);
+                take(i, [balance, Vector::zeros(), Vector::zeros()]);
+            }
+            return;
         }
-        let agents = self.repulsion_by_agents(frame, i, half);
-        let walls = self.repulsion_by_walls(frame, i, half);
-        [balance, agents, walls]
+        let by_agents = self.repulsions(frame, agents.clone(), half);
+        for i in agents {
+            let balance = self.balance(frame, i, state(i), half);
+            let by_agents = by_agents[i % BLOCK] / frame.agents.mass[i];
+            let by_walls = self.repulsion_by_walls(frame, i, half);
+            take(i, [balance, by_agents, by_walls]);
+        }
+    }
+
+    /// The accelerations of agent `i`.
+    fn accelerations(&self, frame: &Frame, i: usize, half: Half) -> [Vector; 3] {
+        let mut parts = [Vector::zeros(); 3];
+        self.each_acceleration(frame, i..i + 1, half, |_, found| parts = found);
+        parts
     }
 }
 
@@ -301,6 +272,19 @@ impl Force for Legs {
         self.accelerations(frame, i, Half::Body).iter().sum()
     }
 
+    fn add_accelerations(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        weight: f64,
+        out: &mut [Vector],
+    ) {
+        let first = agents.start;
+        self.each_acceleration(frame, agents, Half::Body, |i, parts| {
+            out[i - first] += parts.iter().sum::<Vector>() * weight;
+        });
+    }
+
     fn term_names(&self) -> Vec<&str> {
         vec!["balance", "body_agents", "body_walls"]
     }
@@ -328,6 +312,16 @@ impl Force for Legs {
     fn change(&self, frame: &Frame, i: usize, state: &[f64], rates: &mut [f64]) {
         let acceleration = self.accelerations(frame, i, Half::Legs).iter().sum();
         set(rates, parts(state)[1], acceleration);
+    }
+
+    fn changes(&self, frame: &Frame, agents: Range<usize>, states: &States, rates: &mut [f64]) {
+        let first = agents.start;
+        self.each_acceleration(frame, agents, Half::Legs, |i, parts_of| {
+            let own = (i - first) * STATE.len()..(i + 1 - first) * STATE.len();
+            if let Some(state) = states.of(i) {
+                set(&mut rates[own], parts(state)[1], parts_of.iter().sum());
+            }
+        });
     }
 
     fn advance(&self, step: &Step, rates: &[f64], state: &mut [f64]) {

@@ -2,8 +2,9 @@
 
 use std::any::Any;
 use std::fmt::Debug;
+use std::ops::Range;
 
-use crate::agents::Agents;
+use crate::agents::{Agents, States};
 use crate::clock::Integrator;
 use crate::forces::rates::{Extremes, Rates};
 use crate::frame::Frame;
@@ -43,6 +44,21 @@ pub trait Force: Any + Debug + Send + Sync {
     /// that the results do not depend on the number of threads. Accelerations of the frame are not computed yet.
     fn acceleration(&self, frame: &Frame, i: usize) -> Vector;
 
+    /// Adds the accelerations of `agents`, all of one block of [`BLOCK`](crate::neighbors::BLOCK), times `weight` to
+    /// `out`, which begins with the first of them. The default takes them one by one; a force between agents can sum
+    /// for several at once.
+    fn add_accelerations(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        weight: f64,
+        out: &mut [Vector],
+    ) {
+        for (i, out) in agents.zip(out) {
+            *out += self.acceleration(frame, i) * weight;
+        }
+    }
+
     /// The names of the parts of the acceleration.
     fn term_names(&self) -> Vec<&str> {
         vec![self.name()]
@@ -69,6 +85,16 @@ pub trait Force: Any + Debug + Send + Sync {
     fn change(&self, frame: &Frame, i: usize, state: &[f64], rates: &mut [f64]) {
         let _ = (frame, i, state);
         rates.fill(0.0);
+    }
+
+    /// The rates of change of `agents`, all of one block, in `rates`, which begins with the first of them. The default
+    /// takes them one by one by [`change`](Self::change).
+    fn changes(&self, frame: &Frame, agents: Range<usize>, states: &States, rates: &mut [f64]) {
+        for (i, rates) in agents.zip(rates.chunks_mut(states.width())) {
+            if let Some(state) = states.of(i) {
+                self.change(frame, i, state, rates);
+            }
+        }
     }
 
     /// Moves a state on by one step with the rates of the frozen frame. The default adds the rates times the step.

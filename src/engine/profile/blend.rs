@@ -265,9 +265,8 @@ impl Blend {
                 accelerations[i - first] += term * weight;
             });
             for force in &profile.forces {
-                for i in agents.clone() {
-                    accelerations[i - first] += force.acceleration(frame, i) * weight;
-                }
+                let out = &mut accelerations[agents.start - first..];
+                force.add_accelerations(frame, agents.clone(), weight, out);
             }
         });
     }

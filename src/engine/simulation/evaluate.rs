@@ -329,9 +329,7 @@ impl Fixed {
             blend.add_accelerations(frame, span, changed, acceleration);
         });
         for force in &self.scene.own_forces {
-            for (k, acceleration) in acceleration.iter_mut().enumerate() {
-                *acceleration += force.acceleration(frame, from + k);
-            }
+            force.add_accelerations(frame, from..to, 1.0, acceleration);
         }
     }
 }

@@ -116,11 +116,7 @@ impl Simulation {
                     let range = from..from + rates.len() / width;
                     fixed.each_with_force(agents, range, &states.force, |span, force| {
                         let rates = &mut rates[(span.start - from) * width..];
-                        for (i, rates) in span.zip(rates.chunks_mut(width)) {
-                            if let Some(state) = states.of(i) {
-                                force.change(&frame, i, state, rates);
-                            }
-                        }
+                        force.changes(&frame, span, states, rates);
                     });
                 });
             });
