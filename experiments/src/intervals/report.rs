@@ -54,7 +54,9 @@ impl Coverage {
     fn overview(&self) -> String {
         let [few, many] = self.by_runs();
         let scenes = self.scenes().into_iter();
-        let scenes: Vec<String> = scenes.map(|(name, share)| format!("{name} {share}")).collect();
+        let scenes: Vec<String> = scenes
+            .map(|(name, share)| format!("{name} {share}"))
+            .collect();
         let worst = self
             .rows
             .iter()
