@@ -37,7 +37,7 @@ mod read;
 pub use error::numbers::tidy;
 pub use error::{Problem, ScenarioError, in_plain_words, quote, suggestion};
 pub use file::Stop;
-pub use file::listed::{SettingDoc, nested_settings, settings};
+pub use file::listed::{ObjectDoc, Presence, SettingDoc, nested_settings, settings};
 pub use file::schema::schema;
 pub use keys::goals::WayFinding;
 pub use keys::preset::Preset;
