@@ -51,12 +51,14 @@
 
 #![warn(missing_docs, clippy::unwrap_used)]
 
-pub use {analysis, engine, runs, scenario};
+pub use {engine, runs, scenario};
 
 #[cfg(feature = "program")]
 pub use output;
 
 // Public only because the tests, the experiments, the Python package and `main.rs` are crates of their own.
+#[doc(hidden)]
+pub use analysis;
 #[cfg(feature = "program")]
 #[doc(hidden)]
 pub use lab;

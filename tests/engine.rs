@@ -66,6 +66,8 @@ mod passages;
 mod periodic;
 mod periodic_scenarios;
 mod precision;
+mod prelude;
+mod prelude_runs;
 mod push;
 mod queues;
 mod reached;

@@ -28,6 +28,7 @@ mod headlines;
 mod interrupts;
 mod killed;
 mod labels;
+mod lists;
 mod live;
 mod manual;
 mod measure_cli;

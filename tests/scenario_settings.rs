@@ -6,7 +6,7 @@ use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::runs::summary::Summary;
 use sandbox::scenario::catalog::{self, NAMES, Parameters};
 use sandbox::scenario::{
-    Preset, Scenario, Setting, SettingError, nested_settings, schema, settings,
+    Presence, Preset, Scenario, Setting, SettingError, nested_settings, schema, settings,
 };
 use serde_json::{Value, json};
 
@@ -50,6 +50,10 @@ fn every_key_of_a_file_and_every_parameter_is_documented_once() {
 #[test]
 fn the_keys_of_nested_objects_are_documented() {
     let nested = nested_settings();
+    let nested: Vec<_> = nested
+        .iter()
+        .map(|one| (one.path.clone(), one.names()))
+        .collect();
     for (list, required) in [
         ("agents", 1),
         ("grids", 4),
@@ -115,6 +119,49 @@ fn the_keys_of_nested_objects_are_documented() {
             "{path}"
         );
     }
+}
+
+#[test]
+fn every_key_of_a_nested_object_has_a_meaning_and_a_range() {
+    for object in nested_settings() {
+        for doc in &object.keys {
+            assert!(doc.description.ends_with('.'), "{}: {doc:?}", object.path);
+            assert!(!doc.range.is_empty(), "{}: {doc:?}", object.path);
+            let may_be_missing = doc.presence == Presence::Optional;
+            assert!(
+                may_be_missing || doc.default.is_none(),
+                "{}: {doc:?}",
+                object.path
+            );
+        }
+    }
+}
+
+#[test]
+fn a_nested_key_is_described_as_in_its_struct() {
+    let nested = nested_settings();
+    let find = |path: &str, key: &str| {
+        let object = nested.iter().find(|object| object.path == path).unwrap();
+        object.keys.iter().find(|doc| doc.key == key).unwrap()
+    };
+    let servers = find("queues", "servers");
+    assert_eq!(servers.description, "How many people are served at a time.");
+    assert_eq!(servers.default.as_deref(), Some("1"));
+    assert_eq!(
+        servers.range,
+        "a whole number, at least 1 and at most 2^32 - 1"
+    );
+    assert_eq!(servers.presence, Presence::Optional);
+    let service = find("queues", "service_secs");
+    assert_eq!(service.presence, Presence::Required);
+    assert_eq!(
+        service.range,
+        "at least 0 and at most 1e7, or a distribution, an object with one key"
+    );
+    // The meaning of a kind is that of the variant, not that of its keys.
+    let evacuated = find("measurements", "evacuated");
+    assert_eq!(evacuated.description, "Number of counted arrivals.");
+    assert_eq!(evacuated.presence, Presence::OneOf);
 }
 
 #[test]

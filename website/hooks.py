@@ -16,7 +16,8 @@ OUTSIDE = re.compile(r"\]\(((?:\.\./)+)([^)#\s]+)(#[^)]*)?\)")
 ALWAYS = ["CONTRIBUTING.md", "CHANGELOG.md"]
 # Findings, pages for people who work on the program, and lists of names come after the others in the search.
 INSIDE = re.compile(
-    r"findings/|reference/((architecture|extending|self-measurement|releasing|python-api|rust-api)\.md|tables/)|source/"
+    r"findings/|source/|reference/tables/|"
+    r"reference/(architecture|extending|self-measurement|releasing|python-api|rust-api|settings)\.md"
 )
 
 

@@ -33,6 +33,7 @@ Examples:
 const LIST_EXAMPLES: &str = "\
 Examples:
   sandbox list --settings
+  sandbox list --settings --update docs/reference/settings.md
   sandbox list --schema > scenario.schema.json
 Editors use the schema where a scenario has the key \"$schema\": \"scenario.schema.json\".";
 
@@ -165,7 +166,7 @@ pub enum Command {
     /// JSON Schema of scenario files
     #[command(after_help = LIST_EXAMPLES)]
     List {
-        /// List the settings that --set takes, with meaning, unit, default and range
+        /// List the settings that --set takes and the keys of nested objects, with meaning, unit, default and range
         #[arg(long)]
         settings: bool,
         /// List what the measurements of scenarios measure: names, units and definitions of their values

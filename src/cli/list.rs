@@ -11,30 +11,31 @@ use super::update::UpdateOptions;
 use output::table::Table;
 use scenario::catalog::{ABOUT, NAMES};
 use scenario::measurements::{Measurement, Quantity};
-use scenario::{self, SHIPPED, SettingDoc, calibrated, nested_settings, settings};
+use scenario::{self, ObjectDoc, Presence, SHIPPED, SettingDoc, calibrated, nested_settings};
 
 /// Most characters in a line beside a name.
 const WIDTH: usize = 80;
 
-pub fn run(list_settings: bool, document: &UpdateOptions, as_json: bool) -> Result<(), Failure> {
+/// `sandbox list` alone.
+pub fn overview(document: &UpdateOptions, as_json: bool) -> Result<(), Failure> {
     if let Some(file) = &document.update {
         let file = file.display();
-        let reason =
-            format!("--update {file}: inserts the table of --measurements; give that, too");
+        let reason = format!(
+            "--update {file}: inserts the tables of --settings or of --measurements; give one of them, too"
+        );
         return Err(Failure::Input(reason));
     }
-    match list_settings {
-        true => tell(as_json, all_settings, settings_text),
-        false => tell(as_json, overview, overview_text),
-    }
+    tell(as_json, all_names, names_text)
 }
 
-/// The name of the table in the document.
-const TABLE: &str = "values";
+/// The names of the tables in documents.
+const VALUES: &str = "values";
+const SETTINGS: &str = "settings";
+const NESTED: &str = "nested";
 
 /// `sandbox list --measurements`.
 pub fn measurements(document: &UpdateOptions, as_json: bool) -> Result<(), Failure> {
-    document.check(None, &[TABLE])?;
+    document.check(None, &[VALUES])?;
     let all = Measurement::all_quantities();
     let pairs = all
         .iter()
@@ -46,13 +47,63 @@ pub fn measurements(document: &UpdateOptions, as_json: bool) -> Result<(), Failu
         .column("unit", |(_, one)| one.unit)
         .column("meaning", |(_, one)| one.meaning.as_str())
         .table();
-    document.put([(TABLE, table.markdown())])?;
+    document.put([(VALUES, table.markdown())])?;
     let line = |(of, one): &(&String, &Quantity)| {
         let (value, unit, meaning) = (&one.name, one.unit, &one.meaning);
         json!({"measurement": of, "value": value, "unit": unit, "meaning": meaning})
     };
     let json = || rows.iter().map(line).collect::<Value>();
     tell(as_json, json, || table.text().replace('`', ""))
+}
+
+/// `sandbox list --settings`.
+pub fn settings(document: &UpdateOptions, as_json: bool) -> Result<(), Failure> {
+    document.check(None, &[SETTINGS, NESTED])?;
+    let all = scenario::settings();
+    let nested = nested_settings();
+    document.put([
+        (SETTINGS, settings_table(&all).markdown()),
+        (NESTED, nested_table(&nested).markdown()),
+    ])?;
+    let json = || {
+        let names = nested.iter().map(|object| (&object.path, object.names()));
+        let names: BTreeMap<_, _> = names.collect();
+        json!({ "settings": all, "nested": names, "objects": nested })
+    };
+    tell(as_json, json, || settings_text(&all, &nested))
+}
+
+fn settings_table(all: &[SettingDoc]) -> Table {
+    Table::of(all)
+        .column("key", |doc| format!("`{}`", doc.key))
+        .column("meaning", |doc| doc.description)
+        .column("default", default_cell)
+        .column("range", |doc| doc.range.as_str())
+        .table()
+}
+
+fn nested_table(objects: &[ObjectDoc]) -> Table {
+    let rows = objects.iter().flat_map(|object| {
+        let keys = object.keys.iter();
+        keys.map(|doc| (object.path.as_str(), doc))
+    });
+    let rows: Vec<(&str, &SettingDoc)> = rows.collect();
+    Table::of(&rows)
+        .column("object", |(path, _)| format!("`{path}`"))
+        .column("key", |(_, doc)| format!("`{}`", doc.key))
+        .column("meaning", |(_, doc)| doc.description)
+        .column("default", |(_, doc)| default_cell(doc))
+        .column("range", |(_, doc)| doc.range.as_str())
+        .table()
+}
+
+/// The default of a key, or that the key must be given.
+fn default_cell(doc: &SettingDoc) -> Option<String> {
+    match doc.presence {
+        Presence::OneOf => Some("one of these".to_owned()),
+        Presence::Required => Some("required".to_owned()),
+        Presence::Optional => doc.default.as_ref().map(|default| format!("`{default}`")),
+    }
 }
 
 /// The built-in scenarios, the profiles of the paper, and the calibrated ones: names and descriptions.
@@ -65,14 +116,14 @@ fn lists() -> [Vec<(&'static str, String)>; 3] {
     [scenarios.collect(), paper.collect(), calibrated.collect()]
 }
 
-fn overview() -> Value {
+fn all_names() -> Value {
     let entry = |(name, about)| json!({"name": name, "description": about});
     let lists = lists().map(|list| list.into_iter().map(entry).collect::<Value>());
     let [scenarios, paper, calibrated] = lists;
     json!({ "scenarios": scenarios, "profiles": { "paper": paper, "calibrated": calibrated } })
 }
 
-fn overview_text() -> String {
+fn names_text() -> String {
     let heads = [
         "Scenarios (sandbox NAME)",
         "Profiles of the paper (--profile NAME; quote the arrow, or write sf-sph)",
@@ -85,29 +136,17 @@ fn overview_text() -> String {
     texts.collect::<Vec<_>>().join("\n")
 }
 
-fn all_settings() -> Value {
-    let setting = |doc: SettingDoc| {
-        json!({
-            "key": doc.key, "description": doc.description, "default": doc.default, "range": doc.range,
-        })
-    };
-    json!({
-        "settings": settings().into_iter().map(setting).collect::<Vec<_>>(),
-        "nested": nested_settings().into_iter().collect::<BTreeMap<_, _>>(),
-    })
-}
-
-fn settings_text() -> String {
-    let setting = |setting: SettingDoc| {
-        let default = setting
-            .default
-            .map(|default| format!("default: {default}; "));
+fn settings_text(all: &[SettingDoc], nested: &[ObjectDoc]) -> String {
+    let setting = |setting: &SettingDoc| {
+        let default = setting.default.as_ref();
+        let default = default.map(|default| format!("default: {default}; "));
         let values = format!("{}{}", default.unwrap_or_default(), setting.range);
         entry(setting.key, 0, setting.description) + &entry("", 2, &values)
     };
-    let settings: String = settings().into_iter().map(setting).collect();
-    let paths = nested_settings().into_iter();
-    let nested: String = paths.map(|(path, keys)| entry(&path, 0, &keys)).collect();
+    let settings: String = all.iter().map(setting).collect();
+    let objects = nested.iter();
+    let nested = objects.map(|object| entry(&object.path, 0, &object.names()));
+    let nested: String = nested.collect();
     format!(
         "{settings}\nKeys of nested objects (? = optional; `sandbox list --schema` describes them):\n{nested}\n\
          A dotted path sets a value inside a list or object: --set sources.0.rows=50\n\

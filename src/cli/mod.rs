@@ -146,11 +146,12 @@ fn run(command: Command) -> Result<(), Failure> {
             ..
         } => list::measurements(&document, json),
         Command::List {
-            settings,
+            settings: true,
             document,
             json,
             ..
-        } => list::run(settings, &document, json),
+        } => list::settings(&document, json),
+        Command::List { document, json, .. } => list::overview(&document, json),
         Command::Generate { what, out } => manual::generated(&what, out.as_deref()),
         Command::Completions { shell } => {
             old("completions", "generate SHELL");

@@ -40,7 +40,8 @@ pub struct Walled<T> {
 }
 
 impl<T: Copy + Default> Walled<T> {
-    /// The blocks of [`BLOCK`] agents; empty where no agent has walls near it.
+    /// The blocks of `BLOCK` agents; empty where no agent has walls near it.
+    #[doc(hidden)]
     pub fn blocks_mut(&mut self) -> &mut [Vec<T>] {
         &mut self.blocks
     }
@@ -68,12 +69,14 @@ impl<T> Index<usize> for Walled<T> {
 
 impl Fields {
     /// Discards all wall contributions; [`resize_sph`](Self::resize_sph) sets them to zero.
+    #[doc(hidden)]
     pub fn forget_walls(&mut self) {
         self.density_from_walls.clear();
         self.wall_gradient.clear();
     }
 
     /// Resizes the arrays that step 1B writes.
+    #[doc(hidden)]
     pub fn resize_sph(&mut self, count: usize) {
         self.density.resize(count, 0.0);
         self.density_from_walls.resize(count);
@@ -97,8 +100,10 @@ pub struct Frame<'a> {
     /// Quantities derived from the state.
     pub fields: &'a Fields,
     /// Neighbor lists.
+    #[doc(hidden)]
     pub neighbors: &'a Neighbors,
     /// Agents and fields, packed for sums over pairs.
+    #[doc(hidden)]
     pub packed: &'a Packed,
     /// Seed of the agents' random choices.
     pub seed: u64,

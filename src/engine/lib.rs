@@ -5,12 +5,16 @@
 
 #![warn(missing_docs, clippy::unwrap_used)]
 
+// What is hidden is public for the other crates of this workspace, and no part of what the library promises.
+
 pub mod math;
 
+#[doc(hidden)]
 pub mod limits;
 
 pub mod period;
 
+#[doc(hidden)]
 pub mod random;
 
 pub mod distribution;
@@ -21,6 +25,7 @@ pub mod routes;
 
 pub mod journeys;
 
+#[doc(hidden)]
 pub mod kernel;
 
 pub mod clock;
@@ -29,14 +34,18 @@ pub mod agents;
 
 pub mod traits;
 
+#[doc(hidden)]
 pub mod neighbors;
 
+#[doc(hidden)]
 pub mod pairs;
 
+#[doc(hidden)]
 pub mod boundary;
 
 pub mod frame;
 
+#[doc(hidden)]
 pub mod density;
 
 pub mod forces;
@@ -45,6 +54,7 @@ pub mod profile;
 
 pub mod placement;
 
+#[doc(hidden)]
 pub mod packing;
 
 pub mod entrance;

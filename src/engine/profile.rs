@@ -6,6 +6,7 @@ mod blend;
 mod terms;
 mod walls;
 
+pub use crate::density::SphParameters;
 pub use blend::{Blend, BlendError, BlendStep};
 pub use terms::{Term, Terms};
 
@@ -104,6 +105,7 @@ pub struct Override {
 
 impl Profile {
     /// The sums over near agents that this profile reads.
+    #[doc(hidden)]
     pub fn wanted(&self) -> Wanted {
         Wanted {
             pressure: self.pressure,

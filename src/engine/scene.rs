@@ -6,7 +6,7 @@ mod region;
 use std::sync::Arc;
 
 use crate::agents::{Agents, NewAgent};
-use crate::boundary::WallMethod;
+pub use crate::boundary::WallMethod;
 use crate::clock::Clock;
 pub use crate::clock::Integrator;
 use crate::entrance::{Entrance, ScheduledAgent};
@@ -16,8 +16,9 @@ use crate::forces::walking::WalkingLaw;
 use crate::geometry::{Polygon, Walls};
 use crate::journeys::Journeys;
 use crate::math::Vector;
-use crate::neighbors::{FOLLOWED, ListPolicy, MANY, Ranges, SKIN};
-use crate::pairs::Precision;
+pub use crate::neighbors::ListPolicy;
+use crate::neighbors::{FOLLOWED, MANY, Ranges, SKIN};
+pub use crate::pairs::Precision;
 use crate::period::Period;
 use crate::placement::Grid;
 use crate::profile::{Blend, Override, Profile};
@@ -170,7 +171,7 @@ pub struct Scene {
     pub walls: Walls,
     /// The outlines of the floors behind exits and entrances, where nobody counts, meters.
     pub behind: Vec<Vec<Vector>>,
-    /// The period of a periodic scene: at least twice as long as any agent reaches ([`Ranges::interaction`]).
+    /// The period of a periodic scene: at least twice as long as any agent reaches (`Ranges::interaction`).
     pub period: Option<Period>,
     /// Groups by index.
     pub groups: Vec<Group>,
@@ -329,6 +330,7 @@ impl Scene {
     }
 
     /// The ranges of the neighbor search for these agents.
+    #[doc(hidden)]
     pub fn ranges(&self, needs: &Needs, agents: &Agents) -> Ranges {
         let radii = self
             .groups

@@ -30,7 +30,7 @@ const LONGEST: u64 = 1 << 32;
 /// A run that can be resumed.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Checkpoint {
-    /// [`ENGINE`] of the program that wrote it.
+    /// `ENGINE` of the program that wrote it.
     engine: String,
     /// The name of the scenario's file in messages.
     file: String,

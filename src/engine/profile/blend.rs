@@ -141,6 +141,7 @@ impl Blend {
     }
 
     /// The reach of the forces of an agent with this blend.
+    #[doc(hidden)]
     pub fn reach(&self) -> Reach {
         Reach {
             support_radius: self.sph.support_radius,
@@ -220,6 +221,7 @@ impl Blend {
 
     /// Adds the weighted coefficients of all profiles for sums over near agents, for `agents` of one block of a frozen
     /// frame, all with this blend.
+    #[doc(hidden)]
     pub fn add_pair_coefficients(
         &self,
         frame: &Frame,
@@ -234,6 +236,7 @@ impl Blend {
 
     /// Adds the coefficients of a social force, its weight divided by the mass, for `agents` of one block of a frozen
     /// frame, all with this blend.
+    #[doc(hidden)]
     pub fn add_social_coefficients(
         &self,
         frame: &Frame,
@@ -252,6 +255,7 @@ impl Blend {
 
     /// Adds the accelerations of the paper that do not depend on other agents, and those by [`Profile::forces`], m/s²,
     /// for `agents` of a frozen frame, all with this blend.
+    #[doc(hidden)]
     pub fn add_accelerations(
         &self,
         frame: &Frame,

@@ -1,9 +1,9 @@
 //! Routes around walls: for each goal, a map with the next point to walk to from any position.
 //!
-//! A [`Floor`] is a constrained Delaunay triangulation of the areas that people walk in, with the corners that shortest
-//! routes bend around and the routes between corners. A [`PathMap`] has the way to one goal from any position: the
-//! [`Next`] point or corner, and the length. It is exact for polygons with holes, shared by all agents with that goal,
-//! and needs no search per agent; an agent that is pushed off its way looks it up again. [`around`] keeps clear of the
+//! A `Floor` is a constrained Delaunay triangulation of the areas that people walk in, with the corners that shortest
+//! routes bend around and the routes between corners. A `PathMap` has the way to one goal from any position: the
+//! `Next` point or corner, and the length. It is exact for polygons with holes, shared by all agents with that goal,
+//! and needs no search per agent; an agent that is pushed off its way looks it up again. `around` keeps clear of the
 //! corners on the way.
 //!
 //! Four folders, each of which uses only those before it: `floor` knows no goals, `paths` no agents; `rooms` divides
@@ -14,13 +14,19 @@ mod followed;
 mod paths;
 mod rooms;
 
+pub use followed::{Destination, Plan, Route, Routes};
+pub use rooms::Rooms;
+
+#[doc(hidden)]
 pub use floor::{Bend, Corner, Floor, Mesh, Triangle, Turn, nearest_on, side};
+#[doc(hidden)]
 pub use floor::{Narrowing, Narrowings, Passage, Passages};
-pub use followed::{
-    Destination, MapKey, Plan, Regions, Route, Routes, RoutesOut, Shortest, Walker,
-};
+#[doc(hidden)]
+pub use followed::{MapKey, Regions, RoutesOut, Shortest, Walker};
+#[doc(hidden)]
 pub use paths::{Goal, Next, PathMap, SLACK, Way, around};
-pub use rooms::{Door, Located, Opening, Rooms, Side, WIDEST};
+#[doc(hidden)]
+pub use rooms::{Door, Located, Opening, Side, WIDEST};
 
 use crate::math::Vector;
 

@@ -17,6 +17,7 @@ pub struct Needs {
     /// Density, read in every frame by SPH forces, blending or other forces.
     pub density: bool,
     /// Sums over near neighbors that some profile reads.
+    #[doc(hidden)]
     pub pairs: Wanted,
     /// Some profile uses RVO.
     pub rvo: bool,
@@ -97,6 +98,7 @@ impl Scene {
     }
 
     /// The narrowings of the floor, if a walking law heeds them.
+    #[doc(hidden)]
     pub fn narrowings(&self) -> Narrowings {
         let heeds = self.headings().any(|law| law.gap.narrowing_share != 0.0);
         let routes = self.routes.as_ref().filter(|_| heeds);

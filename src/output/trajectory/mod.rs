@@ -1,4 +1,4 @@
-//! Writes a run as trajectories for other programs. [`scenario::trajectories`] reads them.
+//! Writes a run as trajectories for other programs. `scenario::trajectories` reads them.
 //!
 //! | file | read by | holds |
 //! |---|---|---|

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use serde::Serialize;
 use serde_json::Value;
 
 use crate::error::numbers::plain;
@@ -12,7 +13,7 @@ use crate::keys::catalog::Parameters;
 use crate::keys::names::names;
 
 /// One line of the list of settings.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct SettingDoc {
     /// The key, as in `--set key=value` and in the file.
     pub key: &'static str,
@@ -22,21 +23,74 @@ pub struct SettingDoc {
     pub default: Option<String>,
     /// The allowed values, in words.
     pub range: String,
+    /// Whether the object that it belongs to must have it.
+    pub presence: Presence,
+}
+
+/// Whether an object must have a key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Presence {
+    /// The object has exactly one of its keys of this kind.
+    OneOf,
+    /// The object must have it.
+    Required,
+    /// The object may have it.
+    Optional,
+}
+
+/// The keys of a nested object.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct ObjectDoc {
+    /// The keys that lead to it, joined by dots; numbers of list elements are left out.
+    #[serde(rename = "object")]
+    pub path: String,
+    /// Its keys, in the order of [`Presence`].
+    pub keys: Vec<SettingDoc>,
+}
+
+impl ObjectDoc {
+    /// The names of its keys. Optional ones are marked by `?`.
+    pub fn names(&self) -> String {
+        let names = |presence| {
+            let keys = self.keys.iter().filter(move |doc| doc.presence == presence);
+            keys.map(|doc| doc.key.to_owned())
+        };
+        let one = one_of(names(Presence::OneOf).collect());
+        let one = (!one.is_empty()).then(|| format!("one of {one}"));
+        let optional = names(Presence::Optional).map(|name| name + "?");
+        let all = one
+            .into_iter()
+            .chain(names(Presence::Required))
+            .chain(optional);
+        all.collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// All keys of `--set`: those at the top of the file, then the parameters of profiles.
 pub fn settings() -> Vec<SettingDoc> {
     let keys = names::<File>().iter().chain(names::<Parameters>());
-    let line = |&key| {
-        let schema = property(key);
-        SettingDoc {
-            key,
-            description: schema["description"].as_str().unwrap_or_default(),
-            default: schema.get("default").map(plain),
-            range: words(schema),
-        }
-    };
-    keys.map(line).collect()
+    keys.map(|&key| described(key, property(key), property(key), Presence::Optional))
+        .collect()
+}
+
+/// The line of a key with this schema. Its description is that of the schema, of the `alternative` that the key tells
+/// from others, or of the definition that the schema refers to.
+fn described(
+    key: &'static str,
+    schema: &'static Value,
+    alternative: &'static Value,
+    presence: Presence,
+) -> SettingDoc {
+    let places = [schema, alternative, resolved(schema)];
+    let description = places.into_iter().find_map(|of| of["description"].as_str());
+    SettingDoc {
+        key,
+        description: description.unwrap_or_default(),
+        default: schema.get("default").map(plain),
+        range: words(schema),
+        presence,
+    }
 }
 
 /// Whether `key` is one of [`settings`].
@@ -103,23 +157,22 @@ fn one_of(mut words: Vec<String>) -> String {
     }
 }
 
-/// The keys of the nested objects, each with the path of the object: first those that are required, then the optional
-/// ones, marked by `?`.
-pub fn nested_settings() -> Vec<(String, String)> {
-    let mut lines = Vec::new();
+/// The keys of the nested objects. An object that occurs in several places is listed at the first.
+pub fn nested_settings() -> Vec<ObjectDoc> {
+    let mut objects = Vec::new();
     let mut seen = BTreeSet::from(["#/$defs/Parameters"]); // among the settings
     for key in names::<File>() {
-        collect(key, property(key), &mut seen, &mut lines);
+        collect(key, property(key), &mut seen, &mut objects);
     }
-    lines
+    objects
 }
 
-/// Adds the lines of the objects in `schema`, which is that of `path`. Definitions that were `seen` are left out.
+/// Adds the objects in `schema`, which is that of `path`. Definitions that were `seen` are left out.
 fn collect(
     path: &str,
     schema: &'static Value,
     seen: &mut BTreeSet<&'static str>,
-    lines: &mut Vec<(String, String)>,
+    objects: &mut Vec<ObjectDoc>,
 ) {
     let name = schema["$ref"].as_str();
     if name.is_some_and(|name| !seen.insert(name)) {
@@ -129,32 +182,38 @@ fn collect(
     let lists = ["anyOf", "oneOf"].map(|key| schema[key].as_array());
     let alternatives = || lists.into_iter().flatten().flatten();
     // The keys that tell alternatives apart.
-    let first_keys = alternatives().filter_map(|one| one["required"][0].as_str());
-    let keyed: Vec<&str> = first_keys.collect();
-    let keys = || schema["properties"].as_object().into_iter().flatten();
-    let mut line = Vec::new();
-    if !keyed.is_empty() {
-        let keyed = keyed.iter().map(|&key| key.to_owned()).collect();
-        line.push(format!("one of {}", one_of(keyed)));
-    }
-    line.extend(required(schema).map(str::to_owned));
-    let is_named = |key: &str| keyed.contains(&key) || required(schema).any(|one| one == key);
+    let first_keys = alternatives().filter_map(|one| Some((one["required"][0].as_str()?, one)));
+    let keyed: Vec<(&str, &Value)> = first_keys.collect();
+    let of = &schema["properties"];
+    let keys = || of.as_object().into_iter().flatten();
+    let telling = keyed.iter().map(|&(key, alternative)| {
+        let own = of.get(key).unwrap_or(&alternative["properties"][key]);
+        described(key, own, alternative, Presence::OneOf)
+    });
+    let needed = required(schema).map(|key| described(key, &of[key], &of[key], Presence::Required));
+    let is_named = |key: &str| {
+        keyed.iter().any(|(one, _)| *one == key) || required(schema).any(|one| one == key)
+    };
     let others = keys().filter(|(key, value)| !is_named(key) && value["type"] != "null");
-    line.extend(others.map(|(key, _)| format!("{key}?")));
-    if !line.is_empty() {
-        lines.push((path.to_owned(), line.join(", ")));
+    let others = others.map(|(key, own)| described(key, own, own, Presence::Optional));
+    let docs: Vec<SettingDoc> = telling.chain(needed).chain(others).collect();
+    if !docs.is_empty() {
+        objects.push(ObjectDoc {
+            path: path.to_owned(),
+            keys: docs,
+        });
     }
     for way in alternatives().chain(schema.get("items")) {
         match way["properties"].as_object() {
             Some(keys) if !keyed.is_empty() => {
                 for (key, value) in keys {
-                    collect(&format!("{path}.{key}"), value, seen, lines);
+                    collect(&format!("{path}.{key}"), value, seen, objects);
                 }
             }
-            _ => collect(path, way, seen, lines),
+            _ => collect(path, way, seen, objects),
         }
     }
     for (key, value) in keys() {
-        collect(&format!("{path}.{key}"), value, seen, lines);
+        collect(&format!("{path}.{key}"), value, seen, objects);
     }
 }

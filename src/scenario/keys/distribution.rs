@@ -34,7 +34,7 @@ pub enum Draw {
     From(Box<Spread>),
 }
 
-/// A distribution, an object with one key.
+/// A distribution, an object with one key
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Spread {

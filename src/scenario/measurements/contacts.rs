@@ -11,7 +11,7 @@ use analysis::sound::{self, Contacts};
 use engine::simulation::Simulation;
 
 /// The mean number of contacts per agent in a region at one time, and their modulus M along x, m²: with it linear
-/// theory gives the speed of sound (see [`analysis::sound`]).
+/// theory gives the speed of sound (see `analysis::sound`).
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactsAt {

@@ -11,7 +11,7 @@ use analysis::wave::{self, Run, SpaceTime, Strip};
 use engine::simulation::Simulation;
 
 /// The speed at which a wave arrives at an obstacle, m/s, its amplitude, m/s, and how much of it is reflected, found in
-/// the space-time diagram of a strip along x (see [`analysis::wave`]); the diagram itself is its data.
+/// the space-time diagram of a strip along x (see `analysis::wave`); the diagram itself is its data.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wave {

@@ -85,7 +85,7 @@ impl Scenario {
         })
     }
 
-    /// Reads a scenario from JSON; see [`Draft::read`].
+    /// Reads a scenario from JSON; see `Draft::read`.
     ///
     /// # Errors
     /// The first problem in the text or the settings, with its place.
