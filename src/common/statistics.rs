@@ -8,7 +8,7 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize, Serializer};
 use statrs::distribution::{
-    Beta, Binomial, ContinuousCDF, DiscreteCDF, Normal, StudentsT, Uniform,
+    Beta, Binomial, ChiSquared, ContinuousCDF, DiscreteCDF, Normal, StudentsT, Uniform,
 };
 use statrs::statistics::{Data, Max, Min, OrderStatistics};
 use statrs::stats_tests::NaNPolicy;
@@ -100,6 +100,13 @@ pub fn student(degrees: usize, probability: f64) -> Option<f64> {
     Some(distribution.inverse_cdf(0.5 + 0.5 * probability))
 }
 
+/// The factor by which a standard deviation with these degrees of freedom is smaller than an upper limit of the true
+/// one, which holds with this probability for normal values. `None` without degrees of freedom.
+pub fn upper_std(degrees: usize, probability: f64) -> Option<f64> {
+    let distribution = ChiSquared::new(degrees as f64).ok()?;
+    Some((degrees as f64 / distribution.inverse_cdf(1.0 - probability)).sqrt())
+}
+
 /// The tail of the bootstrap distribution of a mean at each end of its 95 % expanded percentile interval (Hesterberg
 /// 2015): Φ(−√(n / (n − 1)) t), with the 97.5 % quantile t of Student's t. `None` for fewer than two values.
 pub fn expanded_tail(count: usize) -> Option<f64> {
@@ -109,7 +116,7 @@ pub fn expanded_tail(count: usize) -> Option<f64> {
 }
 
 /// A share of runs, with its 95 % confidence interval (Clopper and Pearson 1934).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Share {
     /// The number of these runs.
     pub count: usize,

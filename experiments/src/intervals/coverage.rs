@@ -7,12 +7,12 @@
 
 use serde::Serialize;
 
-use super::scenes::MADE_ON as SCENES;
+use super::scenes::{MADE_ON, WRITTEN_AFTER};
 use sandbox::analysis::statistics::{MeanStd, shuffled};
 use sandbox::lab::error::LabError;
 use sandbox::lab::estimate::{
     Goal, Limits, MOST_PREDICTED, Means, Offer, Prior, Question, QuestionError, Request, Runs,
-    Sampling, Series, Tolerance, Wanted, first_round, further, pilot, predicted,
+    Sampling, Series, Tolerance, Wanted, first_round, further, pilot, predicted, range,
 };
 use sandbox::lab::jobs::each;
 use sandbox::runs::case::Source;
@@ -31,7 +31,7 @@ const MOST_DRAWN: usize = 1000;
 /// Predicted numbers of runs within this factor of the true one count as right.
 const FACTOR: f64 = 1.5;
 /// The errors that are asked for, in standard deviations of a run at the finest step.
-const ERRORS: [f64; 3] = [1.0, 0.5, 0.25];
+const ERRORS: [f64; 2] = [1.0, 0.5];
 /// Estimates with fewer runs than this are counted apart.
 const FEW: usize = 20;
 
@@ -60,6 +60,8 @@ impl Pool {
 /// How often the intervals of one result hold its value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Covered {
+    /// Whether the method was made on the scene.
+    pub is_made_on: bool,
     /// The scenario.
     pub scene: String,
     /// The profile.
@@ -89,6 +91,10 @@ pub struct Covered {
     pub predicted: [f64; 2],
     /// The number of estimates that ended before the error asked for because draws ran out.
     pub unfinished: usize,
+    /// The numbers of runs between which that of an estimate is expected before the first run, from other scenes.
+    pub planned: Option<[usize; 2]>,
+    /// The number of estimates whose number of runs is between these.
+    pub in_plan: usize,
     /// Of the estimates with fewer than 20 runs, those whose interval holds the mean at the finest step, and all.
     pub few: [usize; 2],
     /// The same of those with 20 runs and more.
@@ -110,14 +116,17 @@ pub struct Coverage {
 /// A run fails, or results cannot be stored.
 pub fn coverage(pool: Pool, store: &Store, listener: &dyn Listener) -> Result<Coverage, LabError> {
     let (mut rows, mut secs) = (Vec::new(), 0.0);
-    for scene in SCENES {
+    let halves = MADE_ON.iter().map(|scene| (scene, true));
+    let halves = halves.chain(WRITTEN_AFTER.iter().map(|scene| (scene, false)));
+    for (scene, is_made_on) in halves {
         for profile in scene.profiles {
             let question = question(scene.file, profile, scene.results)?;
             let (runs, finest) = pooled(&question, pool, store, listener)?;
             secs += runs.measured_secs();
             for k in 0..scene.results.len() {
                 for error in ERRORS {
-                    rows.extend(covered(&runs, k, finest, (pool, error))?);
+                    let row = covered(&runs, k, finest, (pool, error))?;
+                    rows.extend(row.map(|row| Covered { is_made_on, ..row }));
                 }
             }
         }
@@ -215,6 +224,9 @@ fn covered(
         wanted,
     };
     let references = [finest_mean.mean, reference.value];
+    let expected = Goal::expected(wanted.error, prior);
+    let asked = (CONFIDENCE, MOST_PREDICTED);
+    let planned = expected.map(|goal| range(&[goal], offers, &first, asked));
     let estimate = |seed: usize| {
         let draw = |k: usize| shuffled(pool.seeds, (seed * MOST_DRAWN + k) as u64)[0];
         let order: Vec<usize> = (0..MOST_DRAWN).map(draw).collect();
@@ -253,6 +265,7 @@ fn covered(
         [all.clone().filter(|one| one.held[0]).count(), all.count()]
     };
     Ok(Some(Covered {
+        is_made_on: false,
         scene: question.title[0].clone(),
         profile: question.title[1].clone(),
         result: wanted.name.clone(),
@@ -270,6 +283,11 @@ fn covered(
         known: known.min_by(|a, b| a[1].total_cmp(&b[1])),
         predicted: [by_estimate, by_pool],
         unfinished: estimates.iter().filter(|one| !one.is_finished).count(),
+        planned,
+        in_plan: (planned.map_or(0, |[low, high]| {
+            let is_in = |one: &&Estimate| (low..=high).contains(&one.runs);
+            estimates.iter().filter(is_in).count()
+        })),
         few: few(true),
         many: few(false),
     }))

@@ -31,6 +31,22 @@ impl Coverage {
         Ok(Findings::new(COVERAGE, document, data).with_table(COVERAGE, &self.table())?)
     }
 
+    /// The shares of intervals that hold the value on the scenes on which the method was made, and on the others.
+    fn by_half(&self) -> [Share; 2] {
+        [true, false].map(|made_on| {
+            let rows = || self.rows.iter().filter(|row| row.is_made_on == made_on);
+            let held = rows().map(|row| row.held).sum();
+            Share::of(held, rows().map(|row| row.estimates).sum())
+        })
+    }
+
+    /// The share of estimates whose number of runs is within the range that a plan without runs of the scene gives.
+    fn planned(&self) -> Share {
+        let rows = || self.rows.iter().filter(|row| row.planned.is_some());
+        let inside = rows().map(|row| row.in_plan).sum();
+        Share::of(inside, rows().map(|row| row.estimates).sum())
+    }
+
     /// The shares of intervals that hold the value: of estimates with fewer than 20 runs, and of the others.
     fn by_runs(&self) -> [Share; 2] {
         let of = |counts: &dyn Fn(&Covered) -> [usize; 2]| {
@@ -53,6 +69,7 @@ impl Coverage {
 
     fn overview(&self) -> String {
         let [few, many] = self.by_runs();
+        let [made_on, written_after] = self.by_half();
         let scenes = self.scenes().into_iter();
         let scenes: Vec<String> = scenes
             .map(|(name, share)| format!("{name} {share}"))
@@ -69,13 +86,16 @@ impl Coverage {
             Range::of(&ratios.collect::<Vec<_>>()).median
         };
         format!(
-            "{} % intervals hold the value in {} of all estimates, {few} with fewer than 20 runs and {many} with \
-             more; by scene: {}; worst row {:.1} %. Median over the rows: {:.1} \
+            "{} % intervals hold the value in {} of all estimates: {made_on} on the scenes on which the method was \
+             made, {written_after} on those written after it was fixed; {few} with fewer than 20 runs and {many} with \
+             more; by scene: {}. The number of runs is in the range of a plan without runs of the scene in {}; worst \
+             row {:.1} %. Median over the rows: {:.1} \
              times the runs and {:.1} times the time of an estimate for which spread and error of the step are known. \
              The pools of {} runs at each step took {:.2} hours on one core.",
             100.0 * CONFIDENCE,
             self.total(),
             scenes.join(", "),
+            self.planned(),
             Range::of(&worst.collect::<Vec<_>>()).minimum,
             ratio(0, &|row| row.runs),
             ratio(1, &|row| row.secs),

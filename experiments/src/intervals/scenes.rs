@@ -66,3 +66,64 @@ pub(super) const MADE_ON: [Scene; 6] = [
         ],
     },
 ];
+
+/// The scenes that were written after the method was fixed.
+pub(super) const WRITTEN_AFTER: [Scene; 6] = [
+    Scene {
+        file: "intervals/endless.json",
+        profiles: &["steer+sph", "sph"],
+        results: &[
+            "all_speed_m_per_s",
+            "density_mean_5s",
+            "all_flow_per_m_per_s",
+        ],
+    },
+    Scene {
+        file: "intervals/two_exits.json",
+        profiles: &["steer+sph", "walk+sph", "sf"],
+        results: &[
+            "t95_secs",
+            "flow_per_s",
+            "delay_secs",
+            "density_mean_6s",
+            "exposure_above_4_person_secs",
+            "exposure_above_5_person_secs",
+        ],
+    },
+    Scene {
+        file: "intervals/bend.json",
+        profiles: &["steer+sph", "walk+sph", "sph"],
+        results: &[
+            "after_flow_per_s",
+            "after_speed_m_per_s",
+            "density_mean_8s",
+            "exposure_slow_person_secs",
+        ],
+    },
+    Scene {
+        file: "intervals/counters.json",
+        profiles: &["steer+sph", "sph"],
+        results: &["t95_secs", "waited_secs", "longest_delay_secs"],
+    },
+    Scene {
+        file: "intervals/plaza_of_twenty.json",
+        profiles: &["steer+sph", "walk+sph", "sf"],
+        results: &[
+            "mean_secs",
+            "t95_secs",
+            "delay_secs",
+            "exposure_slow_person_secs",
+        ],
+    },
+    Scene {
+        file: "intervals/gate.json",
+        profiles: &["steer+sph", "walk+sph", "sph"],
+        results: &[
+            "gate_flow_per_s",
+            "gate_density_per_m2",
+            "evacuated",
+            "density_mean_30s",
+            "exposure_slow_person_secs",
+        ],
+    },
+];

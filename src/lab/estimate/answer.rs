@@ -30,7 +30,7 @@ pub struct Row {
     pub reached: Reached,
     /// The half width asked for, as typed.
     pub wanted: String,
-    /// Whether the half width is at most that.
+    /// Whether the half width is at most that, and all runs have a value: without one the mean is that of other runs.
     pub is_reached: bool,
     /// The order of the error in the time step that fits the runs best, averaged over what is possible.
     pub order: f64,
@@ -40,6 +40,8 @@ pub struct Row {
     pub steps: Vec<AtStep>,
     /// The number of runs without a value.
     pub missing: usize,
+    /// The runs with a value among those without an error.
+    pub with_value: Share,
     /// What the default settings would give: the preset `paper`.
     pub default: OfPreset,
     /// What the means at other steps are expected to be.
@@ -228,15 +230,19 @@ impl Row {
         };
         let chance = means.width(confidence) * deviation;
         let values = series.values.iter().flatten();
+        let missing = values.filter(|value| value.is_none()).count();
+        let finished = runs.all_at_steps().flatten().count();
+        let valued: usize = means.levels.iter().map(|level| level.runs).sum();
         Self {
             name: wanted.name.clone(),
             reached,
             wanted: wanted.error.to_string(),
-            is_reached: reached.error <= wanted.error.of(reached.value),
+            is_reached: missing == 0 && reached.error <= wanted.error.of(reached.value),
             order: limit.order,
             deviation,
             steps: steps.collect(),
-            missing: values.filter(|value| value.is_none()).count(),
+            missing,
+            with_value: Share::of(valued, finished),
             default: OfPreset::new(default, limit, [chance, reached.error]),
             limit: limit.clone(),
         }

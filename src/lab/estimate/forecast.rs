@@ -3,7 +3,7 @@
 use rayon::current_num_threads;
 use serde::Serialize;
 
-use super::plan::{Goal, MOST_PREDICTED, pilot, predicted};
+use super::plan::{Goal, MOST_PREDICTED, pilot, predicted, range};
 use super::question::Question;
 use super::run::Runs;
 use super::series::Reached;
@@ -21,6 +21,8 @@ pub struct Forecast {
     pub known: usize,
     /// The expected steps, seconds, with their numbers of runs.
     pub runs: Vec<(f64, usize)>,
+    /// The numbers of runs in all between which it is in nine of ten cases, as far as the spread of runs is known.
+    pub range: [usize; 2],
     /// The expected time on one core, seconds; without runs of the scenario, if all runs last for its duration.
     pub secs: f64,
     /// The results whose errors are expected to be larger than asked for with the most runs that are allowed, with
@@ -80,7 +82,9 @@ impl Forecast {
         let known = runs.first_round();
         let first = known.unwrap_or_else(|| pilot(&offers, runs.question.start));
         let most = request.limits.runs.min(MOST_PREDICTED);
-        let (counts, errors) = predicted(goals, &offers, first, (request.confidence, most));
+        let asked = (request.confidence, most);
+        let range = range(goals, &offers, &first, asked);
+        let (counts, errors) = predicted(goals, &offers, first, asked);
         let used = offers.iter().zip(counts).filter(|(_, runs)| *runs > 0);
         let mut short = Vec::new();
         for ((wanted, goal), error) in request.wanted.iter().zip(goals).zip(errors) {
@@ -97,6 +101,7 @@ impl Forecast {
         Self {
             based_on: None,
             known: 0,
+            range,
             runs: used
                 .clone()
                 .map(|(offer, runs)| (offer.step, runs))
@@ -111,6 +116,7 @@ impl Forecast {
         let all: usize = self.runs.iter().map(|(_, runs)| runs).sum();
         let threads = current_num_threads();
         let minutes = round::brief(self.secs / 60.0 / threads as f64);
+        let [low, high] = self.range;
         let (limit, known) = match &self.based_on {
             Some(scenario) => ("", format!("runs of {scenario}")),
             // No run has shown whether the scenario ends before its duration.
@@ -124,7 +130,8 @@ impl Forecast {
         let short =
             misses.map(|(name, error)| format!("; with these, {name} reaches ± {error} only"));
         format!(
-            "expected: {all} runs, {limit}{minutes} min on {threads} threads, from {} {known}: {}{}\n",
+            "expected: {all} runs ({low} to {high} in 9 of 10 cases), {limit}{minutes} min on {threads} threads, from {} \
+             {known}: {}{}\n",
             self.known,
             steps.join(", "),
             short.collect::<String>()

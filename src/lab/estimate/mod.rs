@@ -28,7 +28,7 @@ pub use bounds::Bounded;
 pub use compared::{Change, Compared, compared, is_answer};
 pub use forecast::Forecast;
 pub use limit::{Level, Limit};
-pub use plan::{Goal, MOST_PREDICTED, Offer, first_round, further, pilot, predicted};
+pub use plan::{Goal, MOST_PREDICTED, Offer, first_round, further, pilot, predicted, range};
 pub use prior::{Known, Prior, Quantity};
 pub use question::{Question, QuestionError, Rung};
 pub use report::names;

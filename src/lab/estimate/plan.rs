@@ -16,6 +16,8 @@ const PILOT: usize = 5;
 const FEW: usize = 6;
 /// The most runs that are tried to find the first step.
 const MOST_TRIED: usize = 1000;
+/// The standard deviations on either side of the mean that hold nine of ten normal values.
+const NINE_OF_TEN: f64 = 1.645;
 /// Predictions without a limit end at this number of runs.
 pub const MOST_PREDICTED: usize = 100_000;
 
@@ -39,6 +41,8 @@ pub struct Goal {
     pub means: Means,
     /// Their limit of fine steps, by which the means of further runs are expected.
     pub limit: Limit,
+    /// The fewest runs that say how far the result varies.
+    pub(super) fewest: usize,
 }
 
 impl Goal {
@@ -47,9 +51,15 @@ impl Goal {
         let limit = means.limit();
         Self {
             tolerance,
+            fewest: means.fewest(),
             means,
             limit,
         }
+    }
+
+    /// The goal of a result that nothing in the runs leaves to chance: any number of runs says it.
+    pub(super) fn without_chance(self) -> Self {
+        Self { fewest: 0, ..self }
     }
 
     /// Before the first run: the value is 1. `None` if no spread is known, or if the error is asked for in the result's
@@ -59,6 +69,7 @@ impl Goal {
         let limit = Limit::exact(1.0);
         matches!(tolerance, Tolerance::Relative(_)).then_some(Self {
             tolerance,
+            fewest: means.fewest(),
             means,
             limit,
         })
@@ -71,7 +82,7 @@ impl Goal {
 }
 
 /// The number of further runs at each of `offers`, which are in order from the finest to the coarsest step; `None` if
-/// all goals are reached.
+/// all goals are reached, with enough runs to say so.
 pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<usize>> {
     let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
     let excess = |plan: &[usize]| -> f64 {
@@ -83,13 +94,16 @@ pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<
     };
     let mut plan = vec![0; offers.len()];
     let mut left = excess(&plan);
+    let runs: usize = offers.iter().map(|offer| offer.runs).sum();
     if left <= 0.0 {
-        return None;
+        let fewest = goals.iter().map(|goal| goal.fewest).max()?;
+        let most = (0..offers.len()).max_by_key(|&k| offers[k].runs)?;
+        plan[most] = fewest.saturating_sub(runs);
+        return (plan[most] > 0).then_some(plan);
     }
     // A step that is finer than half of the finest one so far is left to the next plan.
     let tried = offers.iter().position(|offer| offer.runs > 0);
     let first = tried.unwrap_or(0).saturating_sub(1);
-    let runs: usize = offers.iter().map(|offer| offer.runs).sum();
     let most = runs.max(FEW);
     while plan.iter().sum::<usize>() < most {
         let choices = (first..offers.len()).map(|k| {
@@ -190,4 +204,30 @@ pub fn predicted(
             left -= added;
         }
     }
+}
+
+/// The numbers of runs between which the number of an estimate is expected in nine of ten cases: with the smallest and
+/// the largest spread that what is known of its goals allows.
+pub fn range(
+    known: &[Goal],
+    offers: &[Offer],
+    first: &[usize],
+    (confidence, most): (f64, usize),
+) -> [usize; 2] {
+    [-1.0, 1.0].map(|sign| {
+        let scaled = known.iter().map(|goal| {
+            let logarithm = sign * NINE_OF_TEN * goal.means.spread_uncertainty();
+            let means = Means {
+                variance: goal.means.variance * (2.0 * logarithm).exp(),
+                ..goal.means.clone()
+            };
+            Goal {
+                means,
+                ..goal.clone()
+            }
+        });
+        let scaled: Vec<Goal> = scaled.collect();
+        let (runs, _) = predicted(&scaled, offers, first.to_vec(), (confidence, most));
+        runs.iter().sum()
+    })
 }

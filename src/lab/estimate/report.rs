@@ -93,8 +93,9 @@ impl Answer {
         }
         for row in self.results.iter().filter(|row| row.missing > 0) {
             text += &format!(
-                "{}: {} of {} runs have no value; the results are those of the others.\n",
-                row.name, row.missing, self.runs.all
+                "{0} is not reached: {1} of {2} runs have a value ({3}), and the mean is theirs alone. A longer duration \
+                 may give all runs one; in `--bound {0}=95%` runs without a value count as beyond all others.\n",
+                row.name, row.with_value.count, row.with_value.of, row.with_value
             );
         }
         for why in &self.without {
@@ -102,7 +103,8 @@ impl Answer {
         }
         if let Some(why) = &self.stopped {
             let reached = |row: &Row| format!("{} to {}", row.name, row.percent());
-            let rows = self.results.iter().filter(|row| !row.is_reached);
+            let rows = self.results.iter();
+            let rows = rows.filter(|row| !row.is_reached && row.missing == 0);
             let missed: Vec<String> = rows.map(reached).collect();
             if !missed.is_empty() {
                 text += &format!("Not reached, as {why}: {}.\n", missed.join(", "));
@@ -112,7 +114,7 @@ impl Answer {
     }
 
     fn results_table(&self) -> Table {
-        Table::of(&self.results)
+        let columns = Table::of(&self.results)
             .column("result", |row| row.name.as_str())
             .column("value", |row| row.written(row.reached.value))
             .column("±", |row| row.written(row.reached.error))
@@ -121,8 +123,13 @@ impl Answer {
             .column("step", |row| row.written(row.reached.step))
             .column("wanted", |row| row.wanted.as_str())
             .column("reached", Row::yes_or_no)
-            .column("order", |row| format!("{:.1}", row.order))
-            .table()
+            .column("order", |row| format!("{:.1}", row.order));
+        match self.results.iter().any(|row| row.missing > 0) {
+            true => columns
+                .column("runs with a value", |row| row.with_value.to_string())
+                .table(),
+            false => columns.table(),
+        }
     }
 
     fn bounds_table(&self) -> Table {
@@ -197,7 +204,10 @@ impl Answer {
             .column("confidence", |_| self.confidence)
             .column("finest_step_secs", finest)
             .column("order", |row| row.order)
-            .column("missing", |row| row.missing);
+            .column("missing", |row| row.missing)
+            .column("with_value", |row| row.with_value.count)
+            .column("with_value_low", |row| row.with_value.interval[0])
+            .column("with_value_high", |row| row.with_value.interval[1]);
         columns.table()
     }
 

@@ -201,10 +201,15 @@ impl<'a> Runs<'a> {
         if expected > 0.0 { wall / expected } else { 1.0 }
     }
 
+    /// The results of the runs at the steps on offer.
+    pub(super) fn all_at_steps(&self) -> impl Iterator<Item = &Result<RunResult, String>> + Clone {
+        self.levels.iter().flat_map(|level| &level.results)
+    }
+
     /// The results of all runs.
     pub fn all_results(&self) -> impl Iterator<Item = &Result<RunResult, String>> + Clone {
-        let levels = self.levels.iter().flat_map(|level| &level.results);
-        levels.chain(self.sample.iter().flat_map(|sample| &sample.results))
+        self.all_at_steps()
+            .chain(self.sample.iter().flat_map(|sample| &sample.results))
     }
 
     /// The time of all runs, seconds on one core.
@@ -298,10 +303,16 @@ impl<'a> Runs<'a> {
     /// Notes what is reached.
     pub(super) fn look(&mut self) {
         let request = &self.question.request;
+        let is_certain = self.are_runs_alike();
         let with_goal = |(wanted, prior): (&Wanted, &Prior)| {
             let series = self.series(&wanted.name);
-            let means = series.means(prior);
-            (series, means.map(|means| Goal::new(wanted.error, means)))
+            let goal = series
+                .means(prior)
+                .map(|means| Goal::new(wanted.error, means));
+            match is_certain {
+                true => (series, goal.map(Goal::without_chance)),
+                false => (series, goal),
+            }
         };
         let wanted = request.wanted.iter().zip(&self.priors);
         self.wanted = wanted.map(with_goal).collect();
@@ -310,6 +321,25 @@ impl<'a> Runs<'a> {
             runs: self.counts(),
             reached: self.goals().map(reached).collect(),
         });
+    }
+
+    /// Whether all runs at the same step, two at least, ended in the same state: nothing in them is left to chance.
+    fn are_runs_alike(&self) -> bool {
+        let state = |result: &Result<RunResult, String>| {
+            let run = result.as_ref().ok()?;
+            Some(run.summary.state_sha256.clone())
+        };
+        let mut repeated = self
+            .levels
+            .iter()
+            .filter(|level| level.results.len() > 1)
+            .peekable();
+        repeated.peek().is_some()
+            && repeated.all(|level| {
+                let mut states = level.results.iter().map(state);
+                let first = states.next().flatten();
+                first.is_some() && states.all(|state| state == first)
+            })
     }
 
     /// Why a result has no values.
