@@ -166,10 +166,11 @@ fn intervals_hold_the_limit_of_drawn_data_as_often_as_they_say() {
             *held += usize::from((reached.value - 100.0).abs() <= reached.error);
         }
     }
-    // Four standard deviations of the counts on either side; the share of the error that no order explains widens.
+    // Four standard deviations of the counts on either side; the share of the error that no order explains widens, and
+    // so does the skewness that 24 normal values seem to have.
     let [eighty, ninety_five] = held.map(|held| held as f64 / f64::from(draws));
-    assert!((0.775..0.85).contains(&eighty), "{eighty}");
-    assert!((0.936..0.975).contains(&ninety_five), "{ninety_five}");
+    assert!((0.8..0.885).contains(&eighty), "{eighty}");
+    assert!((0.945..0.985).contains(&ninety_five), "{ninety_five}");
 }
 
 fn means(values: &[(f64, &[f64])]) -> Means {
@@ -199,14 +200,16 @@ fn offers(runs: [usize; 3]) -> Vec<Offer> {
 #[test]
 fn no_runs_are_added_once_the_error_is_small_enough() {
     let means = means(&[
-        (0.025, &[9.0, 11.0, 10.0, 10.5, 9.5]),
-        (0.05, &[10.0, 9.2, 10.8, 10.1, 9.9]),
+        (0.025, &[9.0, 11.0, 10.0, 10.5, 9.5, 10.0]),
+        (0.05, &[10.0, 9.2, 10.8, 10.1, 9.9, 10.0]),
     ]);
     let reached = means.reached(0.95);
-    for (factor, is_done) in [(1.01, true), (0.99, false)] {
+    // The 30 % quantile of chi-squared with 10 degrees of freedom is 7.267.
+    let caution = (10.0_f64 / 7.267).sqrt();
+    for (factor, is_done) in [(1.01 * caution, true), (0.99 * caution, false)] {
         let tolerance = Tolerance::Absolute(factor * reached.error);
         let goal = Goal::new(tolerance, means.clone());
-        let further = further(&[goal], &offers([0, 5, 5]), 0.95);
+        let further = further(&[goal], &offers([0, 6, 6]), 0.95);
         assert_eq!(further.is_none(), is_done, "{further:?}");
     }
 }
@@ -228,7 +231,7 @@ fn smaller_errors_are_expected_to_need_more_runs() {
             .sum()
     };
     let counts = [0.2, 0.1, 0.05, 0.02].map(runs);
-    assert_eq!(counts[0], 10, "the first round is enough");
+    assert_eq!(counts[0], 12, "the fewest runs are enough");
     assert!(
         counts.is_sorted() && counts[3] > 4 * counts[1],
         "{counts:?}"

@@ -17,6 +17,7 @@ mod differences;
 mod draw;
 mod estimate;
 mod estimate_bounds;
+mod estimate_endings;
 mod estimate_failures;
 mod estimate_prior;
 mod estimate_program;

@@ -52,7 +52,6 @@ fn every_command_takes_a_file_with_a_known_ending_for_trajectories() {
             &["draw", &missing, "--out", &picture][..],
             &["draw", &missing, "--egress", "--out", &picture],
             &["draw", &missing, "--out", &page],
-            &["page", &missing, "--out", &page],
             &["measure", &missing, "--out", &measured],
         ] {
             let output = run(typed);

@@ -110,7 +110,7 @@ pub struct Answer {
     pub first_seed: u64,
     /// The wanted results that have values.
     pub results: Vec<Row>,
-    /// Why the other wanted results and bounds have none.
+    /// Why other wanted results and bounds have no value, or one of some runs alone.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub without: Vec<String>,
     /// The wanted bounds.
@@ -164,6 +164,9 @@ impl Answer {
         let rows = wanted.clone().filter_map(|(wanted, (series, goal))| {
             Some(Row::of(runs, wanted, series, goal.as_ref()?))
         });
+        let rows: Vec<Row> = rows.collect();
+        let partial = rows.iter().filter(|row| row.missing > 0).map(Row::lacking);
+        let partial: Vec<String> = partial.collect();
         let asked = question.request.bounds.iter();
         let bounds: Vec<Bounded> = asked.map(|bound| runs.bounded(bound)).collect();
         let missing = wanted.filter(|(_, (_, goal))| goal.is_none());
@@ -178,8 +181,8 @@ impl Answer {
             settings: question.settings.clone(),
             confidence: question.request.confidence,
             first_seed: question.first_seed,
-            results: rows.collect(),
-            without: valueless.chain(unbounded).collect(),
+            results: rows,
+            without: valueless.chain(partial).chain(unbounded).collect(),
             bounds,
             runs: Counts {
                 all: results.clone().count(),
@@ -246,6 +249,16 @@ impl Row {
             default: OfPreset::new(default, limit, [chance, reached.error]),
             limit: limit.clone(),
         }
+    }
+
+    /// What it means that some runs have no value.
+    fn lacking(&self) -> String {
+        let (name, with) = (&self.name, self.with_value);
+        format!(
+            "{name}: {} of {} runs have a value ({with}), and the mean is theirs alone, so it is not reached; a longer \
+             duration may give all runs one, and in `--bound {name}=95%` runs without one count as beyond all others",
+            with.count, with.of
+        )
     }
 
     /// The number of runs with a value.

@@ -130,8 +130,8 @@ impl Forecast {
         let short =
             misses.map(|(name, error)| format!("; with these, {name} reaches ± {error} only"));
         format!(
-            "expected: {all} runs ({low} to {high} in 9 of 10 cases), {limit}{minutes} min on {threads} threads, from {} \
-             {known}: {}{}\n",
+            "expected: {all} runs ({low} to {high} in 9 of 10 cases), {limit}{minutes} min on {threads} threads, \
+             from {} {known}: {}{}\n",
             self.known,
             steps.join(", "),
             short.collect::<String>()

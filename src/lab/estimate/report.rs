@@ -91,13 +91,6 @@ impl Answer {
         for (name, share) in self.runs.notable() {
             text += &format!("{} of {} runs {name}: {share}.\n", share.count, share.of);
         }
-        for row in self.results.iter().filter(|row| row.missing > 0) {
-            text += &format!(
-                "{0} is not reached: {1} of {2} runs have a value ({3}), and the mean is theirs alone. A longer duration \
-                 may give all runs one; in `--bound {0}=95%` runs without a value count as beyond all others.\n",
-                row.name, row.with_value.count, row.with_value.of, row.with_value
-            );
-        }
         for why in &self.without {
             text += &format!("{why}.\n");
         }
