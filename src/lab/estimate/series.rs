@@ -11,11 +11,11 @@ use super::wanted::Tolerance;
 use analysis::round;
 use analysis::statistics::{MeanStd, student, upper_std};
 
-/// Fewer runs than this do not say how far a result varies: an estimate that ends after the first of them that happen to
-/// agree ends too early.
+/// Fewer runs than this do not say how far a result varies: an estimate that ends after the first of them that happen
+/// to agree ends too early.
 const FEWEST: usize = 12;
-/// The fewest runs of a result that has the same value in all of them: 95 % of such results have another value in at most
-/// 14 % of runs.
+/// The fewest runs of a result that has the same value in all of them: 95 % of such results have another value in at
+/// most 14 % of runs.
 const FEWEST_ALIKE: usize = 20;
 /// An estimate ends when an upper limit of the spread, which holds with this probability, makes its error small enough.
 const CAUTION: f64 = 0.7;
