@@ -368,3 +368,48 @@ fn what_a_run_prints_first_can_be_estimated_by_its_name() {
         assert_eq!((name, at["values"][0].as_f64()), (names[k], Some(expected)));
     }
 }
+
+/// The probability of at most `count` of `of` draws that are each right with this probability.
+fn at_most(count: u32, of: u32, probability: f64) -> f64 {
+    let ways = |k: u32| {
+        (0..k)
+            .map(|j| f64::from(of - j) / f64::from(j + 1))
+            .product::<f64>()
+    };
+    let one =
+        |k: u32| ways(k) * probability.powi(k as i32) * (1.0 - probability).powi((of - k) as i32);
+    (0..=count).map(one).sum()
+}
+
+#[test]
+fn a_result_that_some_runs_lack_is_not_reached() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/intervals/narrow_door.json");
+    let ask = ["--error", "t100_secs=20%", "--set", "duration_secs=37"];
+    let typed = [&["estimate", scene.to_str().unwrap()], &ask[..]].concat();
+    let output = run_in(folder.path(), &typed);
+    assert_eq!(output.status.code(), Some(1));
+    let again = run_in(folder.path(), &[&typed[..], &["--json"]].concat());
+    let row = &json(&again)["estimate"]["results"][0];
+    assert_eq!(row["is_reached"], false);
+    // The share is that of the values, with the interval of Clopper and Pearson.
+    let steps = row["steps"].as_array().unwrap().iter();
+    let values = steps.flat_map(|at| at["values"].as_array().unwrap());
+    let with = values.filter(|value| !value.is_null()).count() as u32;
+    let share = &row["with_value"];
+    let of = share["of"].as_u64().unwrap() as u32;
+    assert_eq!(share["count"], with);
+    assert!(with > 1 && with < of);
+    let [low, high] = [0, 1].map(|k| share["interval"][k].as_f64().unwrap());
+    assert!((at_most(with, of, high) - 0.025).abs() < 1e-6);
+    assert!((1.0 - at_most(with - 1, of, low) - 0.025).abs() < 1e-6);
+    // The text says the same.
+    let said = String::from_utf8(output.stdout).unwrap();
+    let sentence = format!("t100_secs: {with} of {of} runs have a value");
+    assert!(said.contains(&sentence), "{said}");
+    let line = said
+        .lines()
+        .find(|line| line.starts_with("t100_secs  "))
+        .unwrap();
+    assert!(line.contains("  no  ") && line.contains(" to "), "{line}");
+}

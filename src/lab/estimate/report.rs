@@ -283,7 +283,8 @@ impl Row {
         };
         match default.runs.map(f64::ceil) {
             Some(runs) => format!(
-                " {what}: the same ± takes {runs} runs at this step alone, {} s.",
+                " {what}: the same ± takes {runs} run{} at this step alone, {} s.",
+                if runs == 1.0 { "" } else { "s" },
                 round::brief(runs * default.timed.secs)
             ),
             None => format!(" {what}: no number of runs at this step gives ± {around}."),
