@@ -255,8 +255,8 @@ impl Row {
     fn lacking(&self) -> String {
         let (name, with) = (&self.name, self.with_value);
         format!(
-            "{name}: {} of {} runs have a value, {with}; the mean is theirs alone, so it is not reached. A longer duration \
-             may give all runs one, and in `--bound {name}=95%` runs without one count as beyond all others",
+            "{name}: {} of {} runs have a value, {with}; the mean is theirs alone, so it is not reached. A longer \
+             duration may give all runs one, and in `--bound {name}=95%` runs without one count as beyond all others",
             with.count, with.of
         )
     }
