@@ -189,15 +189,38 @@ fn narrowing(law: &Law, one: &Person, walls: &[[Point; 2]]) -> f64 {
     counts * (-(x / law.of("narrowing_range")).powi(2)).exp()
 }
 
+/// How near people who come toward a person are, without those whom a wall hides.
+fn opposed(one: &Person, others: &[&Person], walls: &[[Point; 2]]) -> f64 {
+    let degree = |other: &&Person| {
+        let to = minus(other.r, one.r);
+        let away = to[0].hypot(to[1]);
+        let met = walls.iter().filter_map(|&wall| ray(one.r, unit(to), wall));
+        let hidden = met.fold(f64::INFINITY, f64::min) < away;
+        let against = -dot(unit(one.wish), unit(other.wish));
+        match hidden {
+            true => 0.0,
+            false => ((against - 0.7) / 0.2).clamp(0.0, 1.0) * (2.0 - away / 1.5).clamp(0.0, 1.0),
+        }
+    };
+    others.iter().map(degree).fold(0.0, f64::max)
+}
+
 /// The factor g of the time gap.
-fn factor(law: &Law, one: &Person, motivation: f64, walls: &[[Point; 2]]) -> f64 {
+fn factor(
+    law: &Law,
+    one: &Person,
+    motivation: f64,
+    (others, walls): (&[&Person], &[[Point; 2]]),
+) -> f64 {
     let calm = 1.0 - motivation;
+    let met = opposed(one, others, walls);
     let pressed = (one.density - law.of("press_density")) / law.of("press_range");
     (1.0 - law.of("hurry_share") * motivation)
         * (1.0 - law.of("press_share") * calm * pressed.clamp(0.0, 1.0))
         * (1.0
             + law.of("queue_share")
                 * calm
+                * (1.0 - met)
                 * (one.density - law.of("queue_density")).clamp(0.0, 1.0))
         * (1.0 + law.of("narrowing_share") * narrowing(law, one, walls))
 }
@@ -280,6 +303,7 @@ struct Seen {
     at_walls: u32,
     narrowed: u32,
     slowed: u32,
+    opposed: u32,
 }
 
 fn compare(precision: &str, exact: f64, motivation: f64) -> Seen {
@@ -316,7 +340,7 @@ fn compare(precision: &str, exact: f64, motivation: f64) -> Seen {
             }
             let others = all.iter().filter(|(other, _)| **other != id);
             let others: Vec<&Person> = others.map(|(_, other)| other).collect();
-            let gap = factor(&law, one, motivation, &walls);
+            let gap = factor(&law, one, motivation, (&others, &walls));
             let found = utilities(&law, one, (held[&id], gap), (&others, &walls));
             let best = found.iter().copied().fold(f64::MIN, f64::max);
             let chosen = found[(one.heading + 3) as usize];
@@ -339,6 +363,8 @@ fn compare(precision: &str, exact: f64, motivation: f64) -> Seen {
             seen.at_walls += u32::from(without != found);
             seen.narrowed += u32::from(narrowing(&law, one, &walls) > 0.05);
             seen.slowed += u32::from(expected < s);
+            let met = opposed(one, &others, &walls);
+            seen.opposed += u32::from(met > 0.1 && one.density > law.of("queue_density"));
         }
     }
     seen
@@ -357,11 +383,12 @@ fn agents_decide_as_the_documented_law_says() {
             at_walls,
             narrowed,
             slowed,
+            opposed,
         } = compare(precision, exact, motivation);
         assert!(choices > 300, "{choices}");
         assert!(
-            turned > 30 && at_walls > 30 && narrowed > 30 && slowed > 30,
-            "{turned} {at_walls} {narrowed} {slowed}"
+            turned > 30 && at_walls > 30 && narrowed > 30 && slowed > 30 && opposed > 30,
+            "{turned} {at_walls} {narrowed} {slowed} {opposed}"
         );
     }
 }

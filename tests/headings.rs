@@ -4,7 +4,9 @@ use crate::common::walking::{crowd, walking};
 use crate::common::{blend_with, evaluated, person, run, scene, vector, walker};
 use rand::Rng;
 use sandbox::engine::agents::NewAgent;
-use sandbox::engine::forces::walking::headings::{COUNT, STRAIGHT, before_wall, rotated};
+use sandbox::engine::forces::walking::headings::{
+    COUNT, STRAIGHT, Situation, before_wall, rotated,
+};
 use sandbox::engine::forces::walking::{Headings, Headway};
 use sandbox::engine::geometry::{Polygon, Wall};
 use sandbox::engine::math::{Vector, direction, perpendicular};
@@ -312,21 +314,39 @@ fn motivation_and_density_shorten_the_gap_and_narrowings_lengthen_it() {
     .unwrap()
     .or(&parameters());
     let gap = law_of(&gap).gap;
-    assert_eq!(gap.factor(0.0, 0.0, None), 1.0);
-    assert_eq!(gap.factor(1.0, 0.0, None), 0.5);
-    assert!((gap.factor(0.0, 9.0, None) - 0.6).abs() < 1e-12);
-    assert!((gap.factor(0.0, 4.5, None) - 0.9).abs() < 1e-12);
-    assert!((gap.factor(0.0, 10.5, None) - 0.6 * 1.1).abs() < 1e-12);
-    assert!((gap.factor(0.0, 20.0, None) - 0.6 * 1.2).abs() < 1e-12);
-    assert_eq!(gap.factor(1.0, 20.0, None), 0.5);
-    assert!((gap.factor(0.0, 0.0, Some([0.0, 1.0])) - 1.6).abs() < 1e-12);
-    assert_eq!(gap.factor(0.0, 0.0, Some([0.0, 0.0])), 1.0);
-    let at_range = gap.factor(0.0, 0.0, Some([2.0, 1.0]));
+    let factor = |motivation, density, narrowing| {
+        let calm = Situation::default();
+        gap.factor(&Situation {
+            motivation,
+            density,
+            narrowing,
+            ..calm
+        })
+    };
+    assert_eq!(factor(0.0, 0.0, None), 1.0);
+    assert_eq!(factor(1.0, 0.0, None), 0.5);
+    assert!((factor(0.0, 9.0, None) - 0.6).abs() < 1e-12);
+    assert!((factor(0.0, 4.5, None) - 0.9).abs() < 1e-12);
+    assert!((factor(0.0, 10.5, None) - 0.6 * 1.1).abs() < 1e-12);
+    assert!((factor(0.0, 20.0, None) - 0.6 * 1.2).abs() < 1e-12);
+    assert_eq!(factor(1.0, 20.0, None), 0.5);
+    let met = gap.factor(&Situation {
+        density: 20.0,
+        opposed: 0.75,
+        ..Situation::default()
+    });
+    assert!(
+        (met - 0.6 * 1.05).abs() < 1e-12,
+        "a quarter of the queue's share"
+    );
+    assert!((factor(0.0, 0.0, Some([0.0, 1.0])) - 1.6).abs() < 1e-12);
+    assert_eq!(factor(0.0, 0.0, Some([0.0, 0.0])), 1.0);
+    let at_range = factor(0.0, 0.0, Some([2.0, 1.0]));
     assert!((at_range - 1.0 - 0.6 * (-1.0_f64).exp()).abs() < 1e-12);
     for motivation in [0.0, 0.3, 1.0] {
         for density in [0.0, 4.7, 10.3] {
             for narrowing in [None, Some([0.5, 0.7])] {
-                let factor = gap.factor(motivation, density, narrowing);
+                let factor = factor(motivation, density, narrowing);
                 assert!(factor >= gap.shortest() && factor <= gap.longest());
             }
         }

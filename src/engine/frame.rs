@@ -119,4 +119,16 @@ impl Frame<'_> {
             .map(move |(j, laps)| (j, self.neighbors.seen_from(position[i], laps) - position[j]))
             .filter(move |(_, r_ij)| r_ij.norm_squared() < radius * radius)
     }
+
+    /// All other agents j within `radius` meters of agent `i`, and some farther away, with r_ij = r_i − r_j.
+    pub fn around(&self, i: usize, radius: f64) -> impl Iterator<Item = (usize, Vector)> + '_ {
+        let positions = &self.agents.position;
+        let p = positions[i];
+        let runs = self.neighbors.around(p, radius);
+        let all = runs.flat_map(move |run| {
+            let from = self.neighbors.seen_from(p, run.laps);
+            run.indices().map(move |j| (j, from - positions[j]))
+        });
+        all.filter(move |&(j, _)| j != i)
+    }
 }

@@ -1,7 +1,7 @@
 //! What the time gap of the choice of headings depends on.
 
 use super::{Fixed, Simulation};
-use crate::forces::walking::headings::{Fan, Headings, before_wall};
+use crate::forces::walking::headings::{Fan, Headings, Situation, before_wall};
 use crate::frame::Frame;
 use crate::math::{Vector, direction, perpendicular};
 
@@ -10,6 +10,13 @@ const BEYOND: f64 = 1.0;
 /// Places that are this many times narrower than the floor where the agent is count in full; those that are not
 /// narrower do not count.
 const MUCH_NARROWER: f64 = 1.5;
+/// Agents that come toward another one count in full at half of this distance and nearer, and not at all beyond it,
+/// meters.
+const OPPOSED_WITHIN: f64 = 3.0;
+/// Agents come toward each other if the cosine between their ways is less than this number below 0, and fully from the
+/// second one on: those who gather before a door from two sides do not.
+const LEAST_OPPOSED: f64 = 0.7;
+const FULLY_OPPOSED: f64 = 0.9;
 
 impl Simulation {
     /// The headings between which agent `i` chooses; `None` if it follows no choice of headings or does not walk.
@@ -32,7 +39,16 @@ impl Fixed {
             0.0 => None,
             _ => self.narrowing(frame, i, law),
         };
-        law.gap.factor(motivation, density, narrowing)
+        let opposed = match law.gap.queues(motivation, density) {
+            true => opposed(frame, i),
+            false => 0.0,
+        };
+        law.gap.factor(&Situation {
+            motivation,
+            density,
+            opposed,
+            narrowing,
+        })
     }
 
     /// The distance of agent `i` from the narrowing that it walks to, meters, and how much it counts, from 0 to 1.
@@ -54,4 +70,27 @@ impl Fixed {
         let counts = (here / next.width - 1.0) / (MUCH_NARROWER - 1.0);
         Some([next.distance, counts.clamp(0.0, 1.0)])
     }
+}
+
+/// How near agents that come toward agent `i` are, from 0 to 1. Those behind walls do not count.
+fn opposed(frame: &Frame, i: usize) -> f64 {
+    let p = frame.agents.position[i];
+    let way = direction(frame.fields.preferred_velocity[i]);
+    let walls = frame.neighbors.seen_walls(frame.walls, p).iter();
+    let mut nearest: f64 = 0.0;
+    for (j, r_ij) in frame.around(i, OPPOSED_WITHIN) {
+        let near = (2.0 * (1.0 - r_ij.norm() / OPPOSED_WITHIN)).min(1.0);
+        let alike = direction(frame.fields.preferred_velocity[j]).dot(&way);
+        let counts =
+            near * ((-alike - LEAST_OPPOSED) / (FULLY_OPPOSED - LEAST_OPPOSED)).clamp(0.0, 1.0);
+        let is_hidden = || {
+            walls
+                .clone()
+                .any(|&k| frame.walls.wall(k).crossing(p, p - r_ij).is_some())
+        };
+        if counts > nearest && !is_hidden() {
+            nearest = counts;
+        }
+    }
+    nearest
 }

@@ -62,7 +62,7 @@ impl Headings {
             let radius = frame.agents.radius[i];
             let (wall_room, wall) = nearest_wall(frame, i, radius, turned, far);
             let mut least = (far, None);
-            for (j, r_ij) in around(frame, i, far + self.farther(speed)) {
+            for (j, r_ij) in frame.around(i, far + self.farther(speed)) {
                 let relative = frame.agents.velocity[j] - frame.agents.velocity[i];
                 let seen = Seen {
                     along: -r_ij.dot(&turned),
@@ -186,22 +186,6 @@ impl Headings {
         }
         rooms
     }
-}
-
-/// All other agents j within `radius` meters of agent `i`, and some farther away, with r_ij = r_i − r_j.
-fn around<'a>(
-    frame: &'a Frame,
-    i: usize,
-    radius: f64,
-) -> impl Iterator<Item = (usize, Vector)> + 'a {
-    let positions = &frame.agents.position;
-    let p = positions[i];
-    let runs = frame.neighbors.around(p, radius);
-    let all = runs.flat_map(move |run| {
-        let from = frame.neighbors.seen_from(p, run.laps);
-        run.indices().map(move |j| (j, from - positions[j]))
-    });
-    all.filter(move |&(j, _)| j != i)
 }
 
 /// `v` turned by the angle of a unit vector.

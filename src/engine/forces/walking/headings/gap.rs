@@ -8,7 +8,8 @@ use crate::limits::{FARTHEST, HIGHEST_DENSITY};
 /// Parameters of the factor of T.
 ///
 /// Hurried people follow each other more closely. Calm people do so only where they are packed; in a queue they keep
-/// longer gaps. All keep longer gaps where the way becomes narrower.
+/// longer gaps, but where others come toward them they do not queue. All keep longer gaps where the way becomes
+/// narrower.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Gap {
@@ -53,20 +54,39 @@ impl Default for Gap {
     }
 }
 
+/// What the factor of T of an agent depends on.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Situation {
+    /// How much it hurries, from 0 to 1.
+    pub motivation: f64,
+    /// The density at its place (Eq. 9), P/m².
+    pub density: f64,
+    /// How near agents that come toward it are, from 0 to 1.
+    pub opposed: f64,
+    /// The distance to the next narrowing, meters, and how much it counts, from 0 to 1.
+    pub narrowing: Option<[f64; 2]>,
+}
+
 impl Gap {
-    /// The factor of T of an agent with this motivation, 0 to 1, at this density, P/m². `narrowing` has the distance to
-    /// the next narrowing, meters, and how much it counts, from 0 to 1.
-    pub fn factor(&self, motivation: f64, density: f64, narrowing: Option<[f64; 2]>) -> f64 {
-        let hurry = 1.0 - self.hurry_share * motivation;
-        let calm = 1.0 - motivation;
-        let pressed = (density - self.press_density) / self.press_range;
+    /// The factor of T.
+    pub fn factor(&self, of: &Situation) -> f64 {
+        let hurry = 1.0 - self.hurry_share * of.motivation;
+        let calm = 1.0 - of.motivation;
+        let pressed = (of.density - self.press_density) / self.press_range;
         let press = 1.0 - self.press_share * calm * pressed.clamp(0.0, 1.0);
-        let queue = 1.0 + self.queue_share * calm * (density - self.queue_density).clamp(0.0, 1.0);
-        let narrow = narrowing.map_or(1.0, |[distance, counts]| {
+        let queued = (of.density - self.queue_density).clamp(0.0, 1.0) * (1.0 - of.opposed);
+        let queue = 1.0 + self.queue_share * calm * queued;
+        let narrow = of.narrowing.map_or(1.0, |[distance, counts]| {
             let near = distance / self.narrowing_range;
             1.0 + self.narrowing_share * counts * (-near * near).exp()
         });
         hurry * press * queue * narrow
+    }
+
+    /// Whether a queue would lengthen T of an agent with this motivation at this density, P/m²: only then it matters
+    /// whether others come toward it.
+    pub fn queues(&self, motivation: f64, density: f64) -> bool {
+        self.queue_share != 0.0 && motivation < 1.0 && density > self.queue_density
     }
 
     /// Narrowings farther away than this do not count, meters.

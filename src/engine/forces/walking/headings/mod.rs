@@ -21,7 +21,7 @@ mod gap;
 mod room;
 
 pub use fan::{End, Fan, Heading, rotated};
-pub use gap::Gap;
+pub use gap::{Gap, Situation};
 pub use room::before_wall;
 
 use std::f64::consts::TAU;
