@@ -12,7 +12,7 @@ use super::inputs::settings;
 use super::terminal::{talk, tell};
 use super::watch::Watch;
 use lab::estimate::{
-    Answer, Answers, Bound, Forecast, Question, Questions, Request, Validated, names, run as make,
+    Answer, Answers, Bound, Ensemble, Forecast, Question, Questions, Request, names, run as make,
 };
 use lab::machine::main_memory;
 use lab::sweep::Study;
@@ -34,6 +34,10 @@ pub struct EstimateOptions {
     pub scenario: String,
     #[command(flatten)]
     pub error: ErrorOptions,
+    /// Also make two runs with each of the parameter sets that meet the experiments as well as those of the profile:
+    /// their spread is the error of the parameters
+    #[arg(long)]
+    pub model: bool,
     /// Run nothing; print how many runs and minutes are expected, from the finished runs of the folder
     #[arg(long, conflicts_with = "documents")]
     pub plan: bool,
@@ -66,6 +70,11 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
     let mut outputs = Outputs::new(program.force || known.is_begun());
     let settings = settings(&options.scene, None, &mut outputs)?;
     let question = Question::new(source, settings, options.error.request(), main_memory())?;
+    if options.model
+        && let Some(why) = Ensemble::refused(&question)?
+    {
+        return Err(Failure::Input(format!("--model: {why}")));
+    }
     for note in &question.notes {
         talk(&format!("note: {note}"));
     }
@@ -91,10 +100,11 @@ pub fn run(options: &EstimateOptions) -> Result<(), Failure> {
     outputs.check()?;
     let store = Store::open(&folder)?;
     let runs = make(&question, &[], &store, &Watch::new())?;
-    let answer = Answer {
-        validation: Validated::of(&question)?,
-        ..Answer::of(&runs)
+    let sets = match options.model {
+        true => Some(Ensemble::of(&runs, &store, &Watch::new())?),
+        false => None,
     };
+    let answer = Answer::of(&runs).with_model(&runs, sets.as_ref())?;
     let findings = answer.findings(&name, &runs)?;
     options.files.give(&findings, program.json, Some(&folder))?;
     match &answer.stopped {
@@ -115,7 +125,9 @@ fn study_alone(study: &Study, options: &EstimateOptions) -> Result<(), Failure> 
     let EstimateOptions { scene, files, .. } = options;
     let typed = settings(scene, None, &mut Outputs::new(false))?;
     let typed = typed.first().map(ToString::to_string);
-    if let Some(option) = typed.or(options.plan.then(|| "--plan".to_owned())) {
+    let of_scenarios = [("--plan", options.plan), ("--model", options.model)];
+    let mut given = of_scenarios.iter().filter(|(_, given)| *given);
+    if let Some(option) = typed.or(given.next().map(|(option, _)| (*option).to_owned())) {
         return Err(Failure::Input(format!(
             "{option}: is for scenarios; {} is a study, which has its own settings",
             options.scenario

@@ -29,6 +29,8 @@ pub mod sweep;
 
 pub mod suite;
 
+pub mod model;
+
 pub mod estimate;
 
 pub mod reproduce;

@@ -4,12 +4,14 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::bounds::Bounded;
+use super::ensemble::{Ensemble, ParametersPart};
 use super::limit::Limit;
 use super::plan::Goal;
 use super::run::Runs;
 use super::series::{Reached, Series};
-use super::validated::Validated;
 use super::wanted::Wanted;
+use crate::error::LabError;
+use crate::model::{Model, ModelPart};
 use analysis::statistics::{MeanStd, Share};
 use engine::clock::PAPER_TIME_STEP;
 use runs::drive::End;
@@ -17,8 +19,8 @@ use runs::identity::ENGINE;
 use scenario::Preset;
 
 /// What ± means, in one sentence for all reports.
-pub const ABOUT: &str = "± is the error from chance (seeds) and from the time step. It is not the error of the model: \
-                         docs/findings/validation.md compares that with experiments.";
+pub const ABOUT: &str = "± is the error from chance (seeds) and from the time step. The error of the model, its \
+                         difference from people, is not in it.";
 
 /// A wanted result.
 #[derive(Debug, Clone, Serialize)]
@@ -44,9 +46,28 @@ pub struct Row {
     pub with_value: Share,
     /// What the default settings would give: the preset `paper`.
     pub default: OfPreset,
+    /// The spread over the parameter sets of the profile, if it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub parameters: Option<ParametersPart>,
+    /// The error of the model; the reason in words if no experiment says it, `None` if it was not looked up.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model: Option<ModelError>,
     /// What the means at other steps are expected to be.
     #[serde(skip)]
     pub limit: Limit,
+}
+
+/// What experiments say of the error of the model in a result.
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+pub enum ModelError {
+    /// Its bounds.
+    Known(ModelPart),
+    /// Why it is not known.
+    Unknown {
+        /// In words.
+        unknown: String,
+    },
 }
 
 /// A result at one time step.
@@ -120,9 +141,6 @@ pub struct Answer {
     pub runs: Counts,
     /// The computing time of all runs, seconds on one core.
     pub secs: f64,
-    /// What is known of the error of the model; empty if it was not looked up.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub validation: Vec<Validated>,
     /// Why no more runs were made; `None` if all errors are as small as asked for.
     pub stopped: Option<String>,
 }
@@ -191,9 +209,26 @@ impl Answer {
                 idle: finished().filter(|run| is_idle(run.summary.end)).count(),
             },
             secs: runs.measured_secs(),
-            validation: Vec::new(),
             stopped: runs.stopped.clone(),
         }
+    }
+
+    /// The same with the error of the model, and of the parameters if there are runs with several sets of them.
+    ///
+    /// # Errors
+    /// The scenario or data that ship with the program are invalid.
+    pub fn with_model(mut self, runs: &Runs, sets: Option<&Ensemble>) -> Result<Self, LabError> {
+        let model = Model::of(&runs.question.scenario()?)?;
+        for row in &mut self.results {
+            let finished = runs.all_at_steps().flatten().map(|result| &result.summary);
+            row.model = Some(match model.part(&row.name, row.reached.value, finished) {
+                Ok(part) => ModelError::Known(part),
+                Err(unknown) => ModelError::Unknown { unknown },
+            });
+            row.parameters = sets.and_then(|sets| sets.part(&row.name, row.deviation.powi(2)));
+        }
+        self.secs += sets.map_or(0.0, Ensemble::secs);
+        Ok(self)
     }
 
     /// The wanted result with this name, if it has values.
@@ -247,6 +282,8 @@ impl Row {
             missing,
             with_value: Share::of(valued, finished),
             default: OfPreset::new(default, limit, [chance, reached.error]),
+            parameters: None,
+            model: None,
             limit: limit.clone(),
         }
     }

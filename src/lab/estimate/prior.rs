@@ -12,6 +12,7 @@ use std::sync::LazyLock;
 use serde::{Deserialize, Serialize};
 
 use super::limit::SIZES;
+use crate::model::Quantity;
 use analysis::statistics::MeanStd;
 use scenario::input::embedded;
 
@@ -31,33 +32,6 @@ const MOST_DEGREES: f64 = 10.0;
 const WELL_KNOWN: f64 = 4.0;
 /// Steps of the iteration for the shares of sizes.
 const ITERATIONS: usize = 30;
-
-/// What a result is about: results about the same have similar spreads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Quantity {
-    /// Densities.
-    Density,
-    /// Flows, also per width.
-    Flow,
-    /// Speeds.
-    Speed,
-    /// Times.
-    Time,
-}
-
-impl Quantity {
-    /// By the unit of a result.
-    pub fn of_unit(unit: &str) -> Option<Self> {
-        match unit {
-            "P/m²" => Some(Self::Density),
-            "P/s" | "P/(m s)" => Some(Self::Flow),
-            "m/s" => Some(Self::Speed),
-            "s" => Some(Self::Time),
-            _ => None,
-        }
-    }
-}
 
 /// A measured result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,12 +1,14 @@
 //! A scenario whose results are estimated, and the time steps on offer.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::prior::Quantity;
 use super::wanted::Request;
+use crate::error::LabError;
 use crate::gallery::distinct;
+use crate::model::Quantity;
 use analysis::round;
 use engine::clock::SHORTEST_TIME_STEP;
 use engine::stability;
@@ -192,6 +194,38 @@ impl Question {
     /// As [`Case::new`].
     pub fn case(&self, rung: Rung, k: usize) -> Result<Case, RunError> {
         self.at(rung, &[("seed", k)])
+    }
+
+    /// The run with the `k`-th seed and these parameters, at the step to begin with.
+    ///
+    /// # Errors
+    /// As [`Case::new`].
+    pub(super) fn with_parameters(
+        &self,
+        parameters: &BTreeMap<String, f64>,
+        k: usize,
+    ) -> Result<Case, RunError> {
+        let rung = self.rungs[self.start];
+        let keys: Vec<(String, f64)> = parameters
+            .iter()
+            .map(|(name, &value)| (format!("parameters.{name}"), value))
+            .collect();
+        let given = keys.iter().map(|(key, value)| (key.as_str(), json!(value)));
+        let step = [
+            ("time_step_secs", json!(rung.step)),
+            ("coarse_every", json!(rung.coarse_every)),
+            ("seed", json!(self.seed(k))),
+        ];
+        self.with(step.into_iter().chain(given))
+    }
+
+    /// The scenario.
+    ///
+    /// # Errors
+    /// A file of it has changed and is invalid now.
+    pub(super) fn scenario(&self) -> Result<Scenario, LabError> {
+        let scenario = self.case.scenario().map_err(RunError::from);
+        scenario.map_err(|error| LabError::of(self.title[0].clone(), error))
     }
 
     /// A run of a population, both counted from 0.

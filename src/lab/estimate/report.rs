@@ -1,12 +1,12 @@
 //! The answer for readers and programs.
 
-use super::answer::{ABOUT, Answer, AtStep, Row};
+use super::answer::{ABOUT, Answer, AtStep, ModelError, Row};
 use super::bounds::Bounded;
 use super::pictures::{bound_sheet, curve_sheet, sheet};
 use super::run::Runs;
-use super::validated::Validated;
 use crate::curves::csv as curves_csv;
 use crate::error::LabError;
+use crate::model::ModelPart;
 use analysis::round;
 use output::document::{Block, Document, Findings, Names};
 use output::table::{Columns, Table, as_precise};
@@ -72,6 +72,11 @@ impl Answer {
         ))];
         if !self.results.is_empty() {
             blocks.push(Block::table(self.results_table()));
+            blocks.extend(
+                Some(self.parts())
+                    .filter(|text| !text.is_empty())
+                    .map(Block::Text),
+            );
             let about = "Means at each step (± standard deviation of runs):";
             blocks.push(Block::Table(self.steps_table(), about.to_owned()));
         }
@@ -85,9 +90,33 @@ impl Answer {
         blocks
     }
 
-    /// What is known of the model's error, runs without values, and what was not reached, a line for each.
+    /// The parts of the error of each result in words, a line for each.
+    fn parts(&self) -> String {
+        let percent = round::brief(100.0 * self.confidence);
+        let line = |row: &Row| {
+            let value = row.reached.value;
+            let written = |number: f64| row.written(number);
+            let [number, error] = [value, row.reached.error].map(written);
+            let mut parts = vec![format!(
+                "{}: {number}; chance and step ± {error} ({percent} %)",
+                row.name
+            )];
+            parts.extend(row.parameters.map(|part| part.text(value, written)));
+            parts.push(match &row.model {
+                Some(ModelError::Known(part)) => part.text(value, written),
+                Some(ModelError::Unknown { unknown }) => {
+                    format!("the error of the model is not known: {unknown}")
+                }
+                None => return String::new(),
+            });
+            parts.join("; ") + "\n"
+        };
+        self.results.iter().map(line).collect()
+    }
+
+    /// Runs without values, and what was not reached, a line for each.
     fn limits(&self) -> String {
-        let mut text: String = self.validation.iter().map(Validated::text).collect();
+        let mut text = String::new();
         for (name, share) in self.runs.notable() {
             text += &format!("{} of {} runs {name}: {share}.\n", share.count, share.of);
         }
@@ -200,7 +229,11 @@ impl Answer {
             .column("missing", |row| row.missing)
             .column("with_value", |row| row.with_value.count)
             .column("with_value_low", |row| row.with_value.interval[0])
-            .column("with_value_high", |row| row.with_value.interval[1]);
+            .column("with_value_high", |row| row.with_value.interval[1])
+            .column("parameters_low", |row| Some(row.parameters?.low))
+            .column("parameters_high", |row| Some(row.parameters?.high))
+            .column("model_low", |row| Some(row.model_part()?.low))
+            .column("model_high", |row| Some(row.model_part()?.high));
         columns.table()
     }
 
@@ -266,6 +299,14 @@ impl Bounded {
 }
 
 impl Row {
+    /// The bounds of the model's error, if they are known.
+    fn model_part(&self) -> Option<&ModelPart> {
+        match self.model.as_ref()? {
+            ModelError::Known(part) => Some(part),
+            ModelError::Unknown { .. } => None,
+        }
+    }
+
     /// A number of this result with as many decimals as its error has in two digits.
     pub fn written(&self, number: f64) -> String {
         as_precise(number, self.reached.error)

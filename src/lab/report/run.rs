@@ -9,6 +9,7 @@ use super::{facts, limits, people, settings, status};
 use crate::egress::Egress;
 use crate::error::LabError;
 use crate::gallery::distinct;
+use crate::model::changes_profile;
 use engine::simulation::Simulation;
 use output::document::{Block, Document, print};
 use output::results;
@@ -78,10 +79,7 @@ pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> Result<Document
     let groups = scenario.scene.groups.iter();
     let profiles = distinct(groups.map(|group| group.blend.name.as_str()));
     blocks.extend(limits::limits(&profiles));
-    blocks.extend(status::status(
-        &profiles,
-        settings::changes_profile(scenario),
-    )?);
+    blocks.extend(status::status(&profiles, changes_profile(scenario))?);
     blocks.extend(again(scenario, &summary, sources.command, sources.report));
     Ok(Document::numbered(
         format!("Report on the run {}", scenario.name),

@@ -82,13 +82,6 @@ pub fn changed(scenario: &Scenario, by: &'static str) -> Block {
     Block::Table(table, caption.to_owned())
 }
 
-/// Whether a scenario changes parameters of its profiles.
-pub fn changes_profile(scenario: &Scenario) -> bool {
-    let parameters = scenario.document.get("parameters");
-    let own = parameters.and_then(Value::as_object);
-    own.is_some_and(|own| !own.is_empty())
-}
-
 fn is_equal(value: &str, default: &str) -> bool {
     matches!([value, default].map(|text| text.parse::<f64>().ok()), [Some(a), Some(b)] if a == b)
 }

@@ -1,10 +1,8 @@
 //! What `sandbox verify` and `sandbox validate` say of profiles in this version, after the values that were held out.
 
-use serde::de::DeserializeOwned;
-
 use super::held_out::HeldOut;
 use crate::error::LabError;
-use crate::suite::{Passed, Status};
+use crate::suite::{Passed, Status, shipped};
 use output::document::Block;
 use scenario::catalog;
 use scenario::quote::shown;
@@ -19,26 +17,14 @@ struct Known {
 impl Known {
     fn shipped() -> Result<Self, LabError> {
         Ok(Self {
-            held_out: parsed(
+            held_out: shipped(
                 "docs/findings/held_out.json",
                 include_str!("../../../docs/findings/held_out.json"),
             )?,
-            verified: parsed(
-                "docs/findings/verification.json",
-                include_str!("../../../docs/findings/verification.json"),
-            )?,
-            validated: parsed(
-                "docs/findings/validation.json",
-                include_str!("../../../docs/findings/validation.json"),
-            )?,
+            verified: Status::verified()?,
+            validated: Status::validated()?,
         })
     }
-}
-
-/// The data of a file that ships with the program.
-fn parsed<T: DeserializeOwned>(file: &str, text: &str) -> Result<T, LabError> {
-    let invalid = |error| LabError::Data(format!("{file}: {error}"));
-    serde_json::from_str(text).map_err(invalid)
 }
 
 /// How far these profiles are verified and validated. `is_changed`: the run changes their parameters.
@@ -130,7 +116,7 @@ mod tests {
     #[test]
     fn invalid_data_are_an_error_with_the_file_and_the_place() {
         let said = |text| {
-            let error = parsed::<Status>("docs/findings/validation.json", text).unwrap_err();
+            let error = shipped::<Status>("docs/findings/validation.json", text).unwrap_err();
             error.to_string()
         };
         let cut = said("{\n  \"suite\": \"validation\",\n  \"profiles\": {");

@@ -33,7 +33,7 @@ pub struct Case {
     /// A description, in one line.
     pub(super) about: String,
     /// The kind of scene, under which its values are counted.
-    pub(super) kind: Option<String>,
+    pub(crate) kind: Option<String>,
     /// The source of what is expected.
     pub(super) source: Option<String>,
     /// The picture, if there is one.

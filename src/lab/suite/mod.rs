@@ -30,4 +30,4 @@ pub use keys::{Case, Check, Expected};
 pub use passed::Passed;
 pub use report::Report;
 pub use run::{Chosen, Judged, Planned};
-pub use status::Status;
+pub use status::{Status, shipped};

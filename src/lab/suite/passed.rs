@@ -1,5 +1,7 @@
 //! How many cases and values a profile passes.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 /// What a profile passes.
@@ -17,6 +19,9 @@ pub struct Passed {
     /// Those of these values to which the profile was fitted.
     #[serde(default, skip_serializing_if = "none")]
     pub fitted: [usize; 2],
+    /// For each case and each of its measured values, by name: the value of the profile over the measured one.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub ratios: BTreeMap<String, BTreeMap<String, f64>>,
 }
 
 /// Whether nothing is counted.

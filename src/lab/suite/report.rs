@@ -1,5 +1,7 @@
 //! The report of a suite.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Value, json};
 
 use super::changed::Changed;
@@ -210,7 +212,24 @@ impl<'a> Report<'a> {
             missed,
             values: self.count(profile, |_, _| true),
             fitted: self.count(profile, is_fitted),
+            ratios: self.ratios(profile),
         }
+    }
+
+    /// The values of a profile over the measured ones, by case and name.
+    fn ratios(&self, profile: &str) -> BTreeMap<String, BTreeMap<String, f64>> {
+        let own = self.findings.iter().filter(|one| one.profile == profile);
+        let of_case = own.map(|finding| {
+            let values = finding.checks.iter().filter_map(|check| {
+                let ratio = 1.0 + check.error()?;
+                Some((check.quantity.clone(), (1e4 * ratio).round() / 1e4))
+            });
+            (
+                finding.case.name.clone(),
+                values.collect::<BTreeMap<_, _>>(),
+            )
+        });
+        of_case.filter(|(_, values)| !values.is_empty()).collect()
     }
 
     /// The same in words.

@@ -1,5 +1,6 @@
 //! Calibrated profiles: profiles of the paper with a walking law, and parameters that were fitted to experiments.
 
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use serde::Deserialize;
@@ -30,6 +31,16 @@ static ALL: LazyLock<Vec<Calibrated>> =
 /// All calibrated profiles.
 pub fn all() -> &'static [Calibrated] {
     &ALL
+}
+
+/// Parameter sets of calibrated profiles that meet the experiments as well as those of the profile.
+static ENSEMBLES: LazyLock<BTreeMap<String, Vec<BTreeMap<String, f64>>>> =
+    LazyLock::new(|| embedded("ensemble.json", include_str!("ensemble.json")));
+
+/// The parameter sets of a calibrated profile, each with the values that differ from those of the profile; empty if it
+/// has none.
+pub fn ensemble(profile: &str) -> &'static [BTreeMap<String, f64>] {
+    ENSEMBLES.get(profile).map_or(&[], Vec::as_slice)
 }
 
 /// The calibrated profile of this name.

@@ -55,7 +55,8 @@ impl Prepared<'_> {
                 false => "fit only with turned shoulders",
             };
             notes.push(format!(
-                "{name}: on the way to {to}, bodies {width} m wide {what} in a passage of {passage}"
+                "{name}: on the way to {to}, bodies {width} m wide {what} in a passage of {passage}: one of them alone \
+                 may stay there, more often the shorter the time step"
             ));
         }
         Ok(())

@@ -1,5 +1,5 @@
 //! Notes on scenarios that are valid but doubtful: a plan in another unit, journeys without end, no agents. Others are
-//! in `units.rs`, `eclipsed.rs`, `leaving.rs`, `through_walls.rs` and `crossed.rs`.
+//! in `units.rs`, `eclipsed.rs`, `leaving.rs`, `through_walls.rs`, `jamming.rs` and `crossed.rs`.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -12,7 +12,7 @@ use crate::keys::places::Exit;
 use crate::keys::profiles::ProfileChoice;
 use crate::measurements::Measurement;
 use crate::scene::journeys::TO_EXIT;
-use crate::scene::{changes, eclipsed, leaving, through_walls, units};
+use crate::scene::{changes, eclipsed, jamming, leaving, through_walls, units};
 use engine::entrance::Entrance;
 use engine::forces::legs::Legs;
 use engine::geometry::Walls;
@@ -63,6 +63,7 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64, last: f64) -> Vec<String
         .chain(units::notes(keys, scene, last))
         .chain(eclipsed::notes(scene))
         .chain(through_walls::note(scene))
+        .chain(jamming::note(scene, entering))
         .chain(endless(scene))
         .chain(leaving::notes(keys, scene))
         .chain(coincident(scene))

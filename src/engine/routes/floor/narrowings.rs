@@ -86,6 +86,13 @@ impl Narrowings {
         Self { places, cells }
     }
 
+    /// The ends of the narrowest one, meters.
+    pub fn narrowest(&self) -> Option<[Vector; 2]> {
+        let width = |[a, b]: &[Vector; 2]| (b - a).norm();
+        let places = self.places.iter().copied();
+        places.min_by(|one, other| width(one).total_cmp(&width(other)))
+    }
+
     /// The middle of number `k`, meters.
     pub fn middle(&self, k: u32) -> Vector {
         middle(self.places[k as usize])
