@@ -7,6 +7,7 @@ use super::{facts, limits, settings, status};
 use crate::curves::{BAND, Curve, curves, panel};
 use crate::error::LabError;
 use crate::gallery::{color, distinct, with_legend};
+use crate::model::changes_profile;
 use crate::sweep::{Combination, Drawing, Gathered, State, readable};
 use analysis::statistics::MeanStd;
 use output::document::{Block, Document};
@@ -85,7 +86,7 @@ pub fn of_study(gathered: &Gathered, file: &Path, folder: &Path) -> Result<Docum
     blocks.extend(limits::limits(&profiles));
     blocks.extend(status::status(
         &profiles,
-        scenarios.iter().any(settings::changes_profile),
+        scenarios.iter().any(changes_profile),
     )?);
     blocks.extend(again(gathered, file, folder));
     Ok(Document::numbered(
