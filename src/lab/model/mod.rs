@@ -224,9 +224,12 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (!all.is_empty()).then(|| sum / all.len() as f64)
 }
 
+/// A parameter of the computation that presets set: no change of the model.
+const OF_PRESETS: &str = "avoidance_tolerance";
+
 /// Whether a scenario changes parameters of its profiles.
 pub fn changes_profile(scenario: &Scenario) -> bool {
     let parameters = scenario.document.get("parameters");
     let own = parameters.and_then(Value::as_object);
-    own.is_some_and(|own| !own.is_empty())
+    own.is_some_and(|own| own.keys().any(|name| name != OF_PRESETS))
 }
