@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::wanted::Request;
 use crate::error::LabError;
@@ -206,17 +206,20 @@ impl Question {
         k: usize,
     ) -> Result<Case, RunError> {
         let rung = self.rungs[self.start];
-        let keys: Vec<(String, f64)> = parameters
-            .iter()
-            .map(|(name, &value)| (format!("parameters.{name}"), value))
-            .collect();
-        let given = keys.iter().map(|(key, value)| (key.as_str(), json!(value)));
+        let scenario = self.case.scenario().map_err(RunError::from)?;
+        let own = scenario.document.get("parameters").cloned();
+        let mut all: Map<String, Value> = own
+            .and_then(|own| own.as_object().cloned())
+            .unwrap_or_default();
+        let given = parameters.iter();
+        all.extend(given.map(|(name, &value)| (name.clone(), json!(value))));
         let step = [
             ("time_step_secs", json!(rung.step)),
             ("coarse_every", json!(rung.coarse_every)),
             ("seed", json!(self.seed(k))),
+            ("parameters", Value::Object(all)),
         ];
-        self.with(step.into_iter().chain(given))
+        self.with(step)
     }
 
     /// The scenario.
