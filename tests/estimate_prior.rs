@@ -3,8 +3,9 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sandbox::lab::estimate::{
-    Goal, Known, Means, Offer, Prior, Quantity, Series, Tolerance, first_round, further,
+    Goal, Known, Means, Offer, Prior, Series, Tolerance, first_round, further,
 };
+use sandbox::lab::model::Quantity;
 
 /// Finished rows of a study with this spread, and these errors of the paper's step.
 fn rows(spread: f64, errors: &[f64]) -> Vec<Known> {

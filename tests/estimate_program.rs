@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use sandbox::lab::estimate::{Prior, Quantity, Series};
+use sandbox::lab::estimate::{Prior, Series};
+use sandbox::lab::model::Quantity;
 use serde_json::Value;
 
 use crate::common::pictures;
