@@ -7,7 +7,6 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sandbox::analysis::statistics::{draws_above, probability_above};
 use sandbox::lab::estimate::Bound;
-use sandbox::lab::suite::Suite;
 use serde_json::Value;
 
 use crate::common::program::{json, refused, run_in, stderr};
@@ -205,45 +204,6 @@ fn runs_of_imo_are_ten_populations_where_behavior_is_random_and_fifty_elsewhere(
         values
             .chunks(5)
             .any(|runs| runs.iter().any(|value| *value != runs[0]))
-    );
-}
-
-#[test]
-fn the_model_error_is_named_for_measurements_that_the_validation_has() {
-    let folder = tempfile::tempdir().unwrap();
-    let known = answer(folder.path(), &["--error", "time_secs=10%"]);
-    assert_eq!(known["validation"][0]["scenes"], Value::Array(Vec::new()));
-    let line = r#"measurements.2={"line_flow": {"line": [[20.5, 9.6], [20.5, 10.4]]}}"#;
-    let more = [
-        "--set",
-        line,
-        "--error",
-        "line_flow_per_s=20%",
-        "--profile",
-        "walk+sph",
-    ];
-    let output = run_in(folder.path(), &estimate(&more));
-    let found = json(&output)["estimate"]["validation"][0].clone();
-    let scenes: Vec<&str> = found["scenes"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .filter_map(Value::as_str)
-        .collect();
-    assert!(
-        scenes.contains(&"door") && scenes.contains(&"gap-2.4"),
-        "{found}"
-    );
-    assert!(!scenes.contains(&"single-file"), "{found}");
-    let suite = Suite::built_in("validation").unwrap();
-    let named = suite.cases.iter();
-    let named = named.filter(|case| scenes.contains(&case.name.as_str()));
-    let checks: usize = named.map(|case| case.checks.len()).sum();
-    assert_eq!(found["values"], checks);
-    let misses = found["misses"].to_string();
-    assert!(
-        misses.contains("door") && !misses.contains("gap-2.4"),
-        "{misses}"
     );
 }
 

@@ -385,7 +385,7 @@ fn at_most(count: u32, of: u32, probability: f64) -> f64 {
 fn a_result_that_some_runs_lack_is_not_reached() {
     let folder = tempfile::tempdir().unwrap();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/intervals/narrow_door.json");
-    let ask = ["--error", "t100_secs=20%", "--set", "duration_secs=37"];
+    let ask = ["--error", "t100_secs=20%", "--set", "duration_secs=37.75"];
     let typed = [&["estimate", scene.to_str().unwrap()], &ask[..]].concat();
     let output = run_in(folder.path(), &typed);
     assert_eq!(output.status.code(), Some(1));

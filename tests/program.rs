@@ -38,6 +38,7 @@ mod measure_flow;
 mod measure_regions;
 mod measure_safety;
 mod messages;
+mod model_error;
 mod moments;
 mod outputs;
 mod page;

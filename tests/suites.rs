@@ -273,13 +273,23 @@ fn update_also_writes_the_status_beside_the_document() {
     };
     // Of one profile: the document stays.
     let profiles = verify(" --profile sph");
-    let passed = serde_json::json!({"cases": 1, "passed": 1, "missed": [], "values": [2, 2]});
-    assert_eq!(profiles["sph"], passed);
+    // The ratio of the simulated value to the expected one is kept, too: errors of the model come from it.
+    let passed = |profile: &Value| {
+        let ratio = &profile["ratios"]["room"]["time [s]"];
+        let counts = [&profile["cases"], &profile["passed"]].map(Value::as_u64);
+        counts == [Some(1), Some(1)]
+            && profile["missed"] == serde_json::json!([])
+            && profile["values"] == serde_json::json!([2, 2])
+            && ratio
+                .as_f64()
+                .is_some_and(|ratio| ratio > 0.5 && ratio < 2.0)
+    };
+    assert!(passed(&profiles["sph"]), "{profiles}");
     assert_eq!(profiles["rvo"]["missed"][0], "room");
     assert!(profiles.get("sf->sph").is_none());
     assert_eq!(fs::read_to_string(path("doc.md")).unwrap(), document);
     let profiles = verify("");
-    assert_eq!(profiles["sf->sph"], passed);
+    assert!(passed(&profiles["sf->sph"]), "{profiles}");
     assert!(
         fs::read_to_string(path("doc.md"))
             .unwrap()
