@@ -24,8 +24,8 @@ pub fn limits(profiles: &[&str]) -> Vec<Block> {
         items.push(match calibrated::named(profile) {
             Some(_) => format!(
                 "`{name}` is fitted to experiments; the status below counts the measured values that it reproduces, \
-                 first those to which nothing was fitted. Full counterflows jam. Flows through openings can be too \
-                 high where people hurry, which is the unsafe side, and pushes die out."
+                 first those to which nothing was fitted. Exits of about 1 m pass up to \
+                 a fifth more people than measured, which is the unsafe side, and pushes die out."
             ),
             None => format!(
                 "`{name}` is a profile of the paper or one of the scenario's own. It is not fitted to experiments: \

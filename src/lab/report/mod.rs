@@ -13,6 +13,7 @@ mod status;
 mod still;
 mod study;
 mod watched;
+mod worth;
 
 pub use run::{InputFile, Sources, of_run};
 pub use study::of_study;

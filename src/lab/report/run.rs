@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::still::Still;
 use super::watched::Watched;
+use super::worth::worth;
 use super::{facts, limits, people, settings, status};
 use crate::egress::Egress;
 use crate::error::LabError;
@@ -51,6 +52,7 @@ pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> Result<Document
     let overview = facts::overview(&summary, &run.reason());
     blocks.push(Block::Table(facts::table(&overview), String::new()));
     blocks.extend(facts::stuck(&summary));
+    blocks.extend(worth(scenario, &summary)?);
     blocks.extend(notes(run));
     let mut pictures = pictures(run, watched).into_iter();
     blocks.push(Block::heading("Scenario"));
