@@ -385,8 +385,20 @@ fn at_most(count: u32, of: u32, probability: f64) -> f64 {
 fn a_result_that_some_runs_lack_is_not_reached() {
     let folder = tempfile::tempdir().unwrap();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/intervals/narrow_door.json");
-    let ask = ["--error", "t100_secs=20%", "--set", "duration_secs=37.75"];
-    let typed = [&["estimate", scene.to_str().unwrap()], &ask[..]].concat();
+    let scene = ["estimate", scene.to_str().unwrap()];
+    let whole = run_in(
+        folder.path(),
+        &[&scene[..], &["--error", "t100_secs=20%", "--json"]].concat(),
+    );
+    // The last of the first four runs ends after this duration.
+    let steps = &json(&whole)["estimate"]["results"][0]["steps"];
+    let mut first: Vec<f64> = (0..4)
+        .map(|k| steps[0]["values"][k].as_f64().unwrap())
+        .collect();
+    first.sort_by(f64::total_cmp);
+    let duration = format!("duration_secs={}", 0.5 * (first[2] + first[3]));
+    let ask = ["--error", "t100_secs=20%", "--set", &duration];
+    let typed = [&scene[..], &ask[..]].concat();
     let output = run_in(folder.path(), &typed);
     assert_eq!(output.status.code(), Some(1));
     let again = run_in(folder.path(), &[&typed[..], &["--json"]].concat());
