@@ -76,4 +76,5 @@ mod trajectory_formats;
 mod trajectory_laps;
 mod trajectory_robustness;
 mod validate;
+mod validate_runner;
 mod verify;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Crowd, Fault};
 use crate::agents::NewAgent;
-use crate::entrance::{Entrance, place};
+use crate::entrance::{Entrance, ScheduledAgent, place};
 use crate::math::{Vector, clamp_length};
 use crate::random::{self, Purpose};
 use crate::scene::Scene;
@@ -119,6 +119,33 @@ impl Scene {
         }
     }
 
+    /// All who arrive at entrances and on schedule until `end`, seconds, each with the place that it would have if
+    /// nobody were in the way. They are in the order of their arrival, and have the traits of ids from `first` on.
+    pub fn arrivals(&self, first: u32, end: f64) -> Vec<ScheduledAgent> {
+        let mut all: Vec<(f64, Result<&NewAgent, &Entrance>)> = Vec::new();
+        let scheduled = self.scheduled.iter().filter(|late| late.at <= end);
+        all.extend(scheduled.map(|late| (late.at, Ok(&late.agent))));
+        for (k, entrance) in self.entrances.iter().enumerate() {
+            let mut gate = Gate::default();
+            while let Some(time) = gate.next(self, k).filter(|&time| time <= end) {
+                all.push((time, Err(entrance)));
+                gate.arrived += 1;
+                gate.last = Some(time);
+            }
+        }
+        all.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let agents = (first..).zip(all).filter_map(|(id, (at, from))| {
+            let agent = match from {
+                Ok(agent) => *agent,
+                Err(entrance) => through(self, entrance, id, std::iter::empty())?,
+            };
+            let traits = &self.groups[usize::from(agent.group)].traits;
+            let agent = traits.drawn(agent, self.seed, id);
+            Some(ScheduledAgent { at, agent })
+        });
+        agents.collect()
+    }
+
     /// The name of the scheduled agents in reports, which is that of their first group; `None` if there are none.
     pub fn latecomers_name(&self) -> Option<&str> {
         let first = self.scheduled.first()?;
@@ -195,15 +222,25 @@ impl Crowd {
 
     /// The next agent that enters through an entrance, at a random place with room; `None` if there is no room.
     fn next_through(&self, scene: &Scene, entrance: &Entrance) -> Option<NewAgent> {
-        let id = self.agents.entered();
-        let traits = &scene.groups[usize::from(entrance.group)].traits;
-        let radius = traits.radius_of(scene.seed, id);
-        let free = entrance.free(radius, &scene.walls, self.bodies());
-        let share = random::stream(scene.seed, Purpose::Entry, id, 0).sample(Open01);
-        let along = place(&free, share)?;
-        Some(NewAgent {
-            radius: Some(radius),
-            ..NewAgent::at(entrance.at(along), entrance.goal, entrance.group)
-        })
+        through(scene, entrance, self.agents.entered(), self.bodies())
     }
+}
+
+/// Agent `id` at a random place of an entrance with room between other bodies (center and radius, meters); `None` if
+/// there is no room.
+fn through(
+    scene: &Scene,
+    entrance: &Entrance,
+    id: u32,
+    bodies: impl Iterator<Item = (Vector, f64)>,
+) -> Option<NewAgent> {
+    let traits = &scene.groups[usize::from(entrance.group)].traits;
+    let radius = traits.radius_of(scene.seed, id);
+    let free = entrance.free(radius, &scene.walls, bodies);
+    let share = random::stream(scene.seed, Purpose::Entry, id, 0).sample(Open01);
+    let along = place(&free, share)?;
+    Some(NewAgent {
+        radius: Some(radius),
+        ..NewAgent::at(entrance.at(along), entrance.goal, entrance.group)
+    })
 }

@@ -32,10 +32,31 @@ pub fn is_fitted(finding: &Finding, check: usize) -> bool {
     check.is_some_and(|check| check.fitted.contains(&finding.profile))
 }
 
-/// A case whose data are missing.
+/// A case that is not computed.
 pub struct Skipped<'a> {
     /// The case.
     pub case: &'a Case,
-    /// The reason, and the source of the data.
+    /// What it lacks.
+    pub lacks: Lacks,
+    /// The reason in words; of data their source, too.
     pub why: String,
+}
+
+/// What a case lacks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lacks {
+    /// The data with which people start.
+    Data,
+    /// A scene and checks that another simulator can be given.
+    Scene,
+}
+
+impl Lacks {
+    /// Why cases are skipped.
+    pub fn reason(self) -> &'static str {
+        match self {
+            Self::Data => "data are missing",
+            Self::Scene => "another simulator cannot be judged by them",
+        }
+    }
 }

@@ -19,6 +19,7 @@ mod pictures;
 mod quantity;
 mod report;
 mod run;
+mod runner;
 mod runs_check;
 mod status;
 

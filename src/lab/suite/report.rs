@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::changed::Changed;
 use super::check::Judgment;
 use super::file::Suite;
-use super::finding::{Finding, Skipped, THROUGH_WALLS, is_fitted};
+use super::finding::{Finding, Lacks, Skipped, THROUGH_WALLS, is_fitted};
 use super::keys::Case;
 use super::passed::Passed;
 use crate::error::LabError;
@@ -163,17 +163,18 @@ impl<'a> Report<'a> {
                 blocks.push(Block::List(reasons));
             }
         }
-        if !self.skipped.is_empty() {
-            let without_data = self.skipped.iter();
-            let skipped = without_data.map(|one| {
+        for lacks in [Lacks::Data, Lacks::Scene] {
+            let own = self.skipped.iter().filter(|one| one.lacks == lacks);
+            let skipped = own.map(|one| {
                 let (name, title) = (&one.case.name, one.case.title());
                 format!("**{name}**, {title}: {}.", one.why)
             });
-            let count = self.skipped.len();
-            blocks.push(Block::Text(format!(
-                "Skipped because data are missing: {count}."
-            )));
-            blocks.push(Block::List(skipped.collect()));
+            let skipped: Vec<String> = skipped.collect();
+            if !skipped.is_empty() {
+                let (why, count) = (lacks.reason(), skipped.len());
+                blocks.push(Block::Text(format!("Skipped because {why}: {count}.")));
+                blocks.push(Block::List(skipped));
+            }
         }
         let figures = self.figures.iter();
         blocks.extend(figures.map(|(name, sheet)| Block::figure(name, sheet.clone(), "")));
@@ -326,8 +327,8 @@ impl<'a> Report<'a> {
                 "passed": finding.is_passed(), "checks": finding.checks,
             })
         };
-        let without_data = self.skipped.iter();
-        let skipped = without_data.map(|one| json!({"case": one.case.name, "skipped": one.why}));
+        let skipped = self.skipped.iter();
+        let skipped = skipped.map(|one| json!({"case": one.case.name, "skipped": one.why}));
         let mut entries: Vec<Value> = self.findings.iter().map(entry).chain(skipped).collect();
         if self.changed.is_anything() {
             let entries = entries.iter_mut();

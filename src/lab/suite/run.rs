@@ -6,12 +6,12 @@ use std::path::Path;
 use super::changed::Changed;
 use super::check::{Judgment, Runs};
 use super::file::Suite;
-use super::finding::{Finding, Skipped, THROUGH_WALLS};
+use super::finding::{Finding, Lacks, Skipped, THROUGH_WALLS};
 use super::keys::{Case, Expected};
 use super::known::label;
 use super::report::Report;
 use super::runs_check::check_runs;
-use super::{data, deviations, diagrams, pictures};
+use super::{data, deviations, diagrams, pictures, runner};
 use crate::error::LabError;
 use crate::gallery::distinct;
 use crate::jobs::results;
@@ -22,6 +22,7 @@ use runs::job::Listener;
 use runs::store::Store;
 use runs::summary::Summary;
 use scenario::Setting;
+use scenario::catalog::NAMES;
 
 /// The part of a suite that is computed.
 #[derive(Default)]
@@ -38,6 +39,8 @@ pub struct Chosen<'a> {
     pub settings: &'a [Setting],
     /// The folder with the data.
     pub data: Option<&'a Path>,
+    /// The command of another simulator in place of ours; it stands where profiles do.
+    pub runner: Option<&'a str>,
 }
 
 /// What is judged.
@@ -60,6 +63,8 @@ pub struct Planned<'a> {
     changed: Changed,
     /// The labels of the runs that begin from data.
     data: BTreeSet<String>,
+    /// The command of another simulator.
+    runner: Option<&'a str>,
     /// The study.
     pub study: Study,
 }
@@ -71,8 +76,14 @@ impl Suite {
     /// The study is invalid, or a check asks for a run or quantity that does not exist.
     pub fn planned<'a>(&'a self, chosen: &Chosen<'a>) -> Result<Planned<'a>, StudyError> {
         let (mut cases, mut skipped) = (Vec::new(), Vec::new());
+        // Who and where people are does not depend on the profile.
+        let any = [NAMES[0].to_owned()];
         let mut changes = Changes {
-            profiles: chosen.profiles,
+            profiles: if chosen.runner.is_some() {
+                &any
+            } else {
+                chosen.profiles
+            },
             seeds: chosen.seeds,
             first_seed: chosen.first_seed,
             settings: chosen.settings,
@@ -96,7 +107,11 @@ impl Suite {
                         None => format!("needs --data DIR with {}", data.file),
                     };
                     let why = format!("{place}, from {}", data.source);
-                    skipped.push(Skipped { case, why });
+                    skipped.push(Skipped {
+                        case,
+                        lacks: Lacks::Data,
+                        why,
+                    });
                 }
             }
         }
@@ -106,6 +121,18 @@ impl Suite {
         };
         if !cases.is_empty() {
             check_runs(self, &study)?;
+        }
+        if chosen.runner.is_some() {
+            for &case in &cases {
+                if let Some(why) = runner_refuses(case, &study)? {
+                    skipped.push(Skipped {
+                        case,
+                        lacks: Lacks::Scene,
+                        why,
+                    });
+                }
+            }
+            cases.retain(|case| skipped.iter().all(|one| one.case.name != case.name));
         }
         let all = study.cells.iter().map(|cell| cell.case.seed);
         let seeds = all.filter(|_| chosen.first_seed.is_some());
@@ -119,6 +146,7 @@ impl Suite {
             skipped,
             changed,
             data: changes.data.into_keys().map(|(run, _)| run).collect(),
+            runner: chosen.runner,
             study,
         })
     }
@@ -136,7 +164,8 @@ impl<'a> Planned<'a> {
 
     /// The names of the pictures of single cases.
     pub fn pictures(&self) -> impl Iterator<Item = String> {
-        let drawn = self.cases.iter().filter(|case| case.picture.is_some());
+        let own = self.cases.iter().filter(|_| self.runner.is_none());
+        let drawn = own.filter(|case| case.picture.is_some());
         drawn.map(|case| format!("{}.png", case.name))
     }
 
@@ -152,12 +181,24 @@ impl<'a> Planned<'a> {
     ) -> Result<Report<'a>, LabError> {
         let labels: BTreeSet<&str> = self.cases.iter().flat_map(|case| case.runs()).collect();
         let wanted = |cell: &&Cell| labels.contains(label(cell));
-        let jobs = self.study.jobs(|cell| wanted(&cell));
-        let computed = results(&jobs, store, listener)?;
         let cells: Vec<&Cell> = self.study.cells.iter().filter(wanted).collect();
-        let result = |cell: &&Cell| computed.of(&cell.to_string(), &cell.case.key);
-        let results: Vec<RunResult> = cells.iter().map(result).collect::<Result<_, _>>()?;
-        let profiles = distinct(results.iter().map(|result| result.summary.profile.clone()));
+        let results = match self.runner {
+            Some(command) => runner::summaries(command, &cells, store, listener)?,
+            None => {
+                let jobs = self.study.jobs(|cell| wanted(&cell));
+                let computed = results(&jobs, store, listener)?;
+                let result = |cell: &&Cell| {
+                    let result: RunResult = computed.of(&cell.to_string(), &cell.case.key)?;
+                    Ok(result.summary)
+                };
+                cells.iter().map(result).collect::<Result<_, LabError>>()?
+            }
+        };
+        let profiles = distinct(
+            results
+                .iter()
+                .map(|summary: &Summary| summary.profile.clone()),
+        );
         let measured = of_data(self.data, &cells)?;
         let own = cells.iter().copied().zip(&results);
         let runs = by_seed(own, &profiles, &measured);
@@ -187,9 +228,22 @@ impl<'a> Planned<'a> {
             report.figures = diagrams::sheets(&self.suite.cases, &runs);
             report.figures.extend(deviations::sheet(&report));
         }
-        pictures::save(&self.cases, &cells, store, listener)?;
+        if self.runner.is_none() {
+            pictures::save(&self.cases, &cells, store, listener)?;
+        }
         Ok(report)
     }
+}
+
+/// Why another simulator cannot be judged by a case.
+fn runner_refuses(case: &Case, study: &Study) -> Result<Option<String>, StudyError> {
+    let mut scenarios = Vec::new();
+    for run in case.runs() {
+        if let Some(cell) = study.cells.iter().find(|cell| label(cell) == run) {
+            scenarios.push(cell.case.scenario()?);
+        }
+    }
+    Ok(runner::refused(case, &scenarios))
 }
 
 /// The measurements in the data from which runs begin, by the labels of the runs.
@@ -204,12 +258,12 @@ fn of_data(labels: BTreeSet<String>, cells: &[&Cell]) -> Result<Vec<(String, Sum
 
 /// The results of each profile and seed, by the places of the profiles.
 fn by_seed<'r>(
-    results: impl Iterator<Item = (&'r Cell, &'r RunResult)>,
+    results: impl Iterator<Item = (&'r Cell, &'r Summary)>,
     profiles: &[String],
     measured: &'r [(String, Summary)],
 ) -> Vec<Runs<'r>> {
     let mut runs: BTreeMap<_, Vec<(&str, &Summary)>> = BTreeMap::new();
-    for (cell, RunResult { summary, .. }) in results {
+    for (cell, summary) in results {
         let profile = profiles.iter().position(|name| *name == summary.profile);
         let own = runs.entry((profile, cell.case.seed)).or_default();
         own.push((label(cell), summary));
