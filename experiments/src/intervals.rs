@@ -5,6 +5,6 @@ mod knowledge;
 mod report;
 mod scenes;
 
-pub use coverage::{Coverage, Covered, Pool, coverage};
+pub use coverage::{Coverage, Covered, Pool, coverage, scenes};
 pub use knowledge::{KNOWLEDGE, Knowledge, knowledge};
 pub use report::COVERAGE;

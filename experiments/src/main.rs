@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, value_parser};
 use experiments::costs::{COSTS, costs};
-use experiments::intervals::{COVERAGE, KNOWLEDGE, Pool, coverage, knowledge};
+use experiments::intervals::{COVERAGE, KNOWLEDGE, Pool, coverage, knowledge, scenes};
 use experiments::{compare, domains, physics, symmetric, walls};
 use sandbox::cli::{
     CaseOptions, ErrorOptions, Failure, PrintOptions, ResultOptions, TimingOptions, UpdateOptions,
@@ -47,7 +47,7 @@ enum Command {
     Walls(WallOptions),
     /// How often do the intervals of `sandbox estimate` hold the value? (some hours)
     #[command(
-        after_help = "Example: cargo run --release -p experiments -- coverage --seeds 60 --out DIR"
+        after_help = "Example: cargo run --release -p experiments -- coverage gate bend --seeds 60 --out DIR"
     )]
     Coverage(CoverageOptions),
     /// Open questions of crowd physics: crowds of the model in situations with known experiments (hours)
@@ -84,6 +84,9 @@ struct CostOptions {
 
 #[derive(Args)]
 struct CoverageOptions {
+    /// The scenes [default: all]
+    #[arg(value_name = "SCENE", value_parser = PossibleValuesParser::new(scenes()))]
+    scenes: Vec<String>,
     /// Few runs and estimates; a check that everything works
     #[arg(long)]
     quick: bool,
@@ -172,7 +175,7 @@ fn count_intervals(options: &CoverageOptions) -> Result<(), Failure> {
     };
     let cases = &options.cases;
     let store = cases.store(&[COVERAGE], &Names::new(COVERAGE, &[COVERAGE], &[]))?;
-    cases.give(&coverage(pool, &store, &Watch::new())?.findings()?)
+    cases.give(&coverage(&options.scenes, pool, &store, &Watch::new())?.findings()?)
 }
 
 fn measure_walls(options: &WallOptions) -> Result<(), Failure> {

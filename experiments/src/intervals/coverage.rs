@@ -7,7 +7,7 @@
 
 use serde::Serialize;
 
-use super::scenes::{MADE_ON, WRITTEN_AFTER};
+use super::scenes::{MADE_ON, Scene, WRITTEN_AFTER};
 use sandbox::analysis::statistics::{MeanStd, shuffled};
 use sandbox::lab::error::LabError;
 use sandbox::lab::estimate::{
@@ -110,15 +110,29 @@ pub struct Coverage {
     pub(super) pool: Pool,
 }
 
-/// Makes the runs of the pools that are not in the store, and repeats the estimates.
+/// The names of all scenes.
+#[must_use]
+pub fn scenes() -> Vec<&'static str> {
+    let all = MADE_ON.iter().chain(&WRITTEN_AFTER);
+    all.map(Scene::name).collect()
+}
+
+/// Makes the runs of the pools of these scenes that are not in the store, and repeats the estimates; no names: of all
+/// scenes.
 ///
 /// # Errors
 /// A run fails, or results cannot be stored.
-pub fn coverage(pool: Pool, store: &Store, listener: &dyn Listener) -> Result<Coverage, LabError> {
+pub fn coverage(
+    names: &[String],
+    pool: Pool,
+    store: &Store,
+    listener: &dyn Listener,
+) -> Result<Coverage, LabError> {
     let (mut rows, mut secs) = (Vec::new(), 0.0);
     let halves = MADE_ON.iter().map(|scene| (scene, true));
     let halves = halves.chain(WRITTEN_AFTER.iter().map(|scene| (scene, false)));
-    for (scene, is_made_on) in halves {
+    let is_asked = |scene: &Scene| names.is_empty() || names.iter().any(|one| one == scene.name());
+    for (scene, is_made_on) in halves.filter(|(scene, _)| is_asked(scene)) {
         for profile in scene.profiles {
             let question = question(scene.file, profile, scene.results)?;
             let (runs, finest) = pooled(&question, pool, store, listener)?;

@@ -8,6 +8,14 @@ pub(super) struct Scene {
     pub results: &'static [&'static str],
 }
 
+impl Scene {
+    /// The name of its file.
+    pub fn name(&self) -> &'static str {
+        let name = self.file.trim_start_matches("intervals/");
+        name.trim_end_matches(".json")
+    }
+}
+
 /// The scenes on which the method was made.
 pub(super) const MADE_ON: [Scene; 6] = [
     Scene {
