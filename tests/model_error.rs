@@ -8,6 +8,19 @@ use serde_json::Value;
 
 use crate::common::program::{json, run_in, stderr};
 
+/// An evacuation of 25 people, with the flow through its door.
+const SMALL: [&str; 9] = [
+    "evacuation",
+    "--profile",
+    "walk+sph",
+    "--set",
+    "grids.0.columns=5",
+    "--set",
+    "grids.0.rows=5",
+    "--set",
+    r#"measurements.2={"line_flow": {"line": [[20.5, 9.6], [20.5, 10.4]]}}"#,
+];
+
 /// A simulated value over the measured one, as a logarithm.
 #[derive(Clone)]
 struct Ratio {
@@ -66,17 +79,7 @@ fn width(all: &[Ratio]) -> f64 {
 #[test]
 fn an_estimate_has_the_error_of_the_model() {
     let folder = tempfile::tempdir().unwrap();
-    let typed = [
-        "estimate",
-        "evacuation",
-        "--profile",
-        "walk+sph",
-        "--set",
-        "grids.0.columns=5",
-        "--set",
-        "grids.0.rows=5",
-        "--set",
-        r#"measurements.2={"line_flow": {"line": [[20.5, 9.6], [20.5, 10.4]]}}"#,
+    let errors = [
         "--error",
         "line_flow_per_s=20%",
         "--error",
@@ -84,6 +87,7 @@ fn an_estimate_has_the_error_of_the_model() {
         "--error",
         "highest_density=20%",
     ];
+    let typed = [&["estimate"], &SMALL[..], &errors].concat();
     let output = run_in(folder.path(), &typed);
     let again = run_in(folder.path(), &[&typed[..], &["--json"]].concat());
     assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
@@ -119,7 +123,7 @@ fn an_estimate_has_the_error_of_the_model() {
     let first = [(low, center - width), (high, center + width)]
         .map(|(bound, by)| (bound - secs * by.exp()) / (1.0 - by.exp()));
     assert!((first[0] - first[1]).abs() < 1e-6, "{first:?}");
-    assert!(first[0] > 0.0 && first[0] < secs, "{first:?}");
+    assert!(first[0] > 1.0 && first[0] < secs, "{first:?}");
 
     // Nothing that experiments measure.
     let density = row("highest_density");
@@ -133,6 +137,69 @@ fn an_estimate_has_the_error_of_the_model() {
         alike.len()
     );
     assert!(said.contains("model −") && said.contains(&counts), "{said}");
+}
+
+/// The two differences of `model −a … +b` in a line.
+fn differences(line: &str) -> [f64; 2] {
+    let (_, rest) = line.split_once("model −").unwrap();
+    let (low, rest) = rest.split_once(" … +").unwrap();
+    let (high, _) = rest.split_once(" (90 %; ").unwrap();
+    [low, high].map(|one| one.parse().unwrap())
+}
+
+#[test]
+fn the_first_page_of_a_report_says_what_its_numbers_are_worth() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = [&["run"], &SMALL[..], &["--json"]].concat();
+    let run = json(&run_in(folder.path(), &run));
+    let drawn = ["--egress", "--out", "egress.svg", "--json"];
+    let drawn = json(&run_in(
+        folder.path(),
+        &[&["draw"], &SMALL[..], &drawn].concat(),
+    ));
+    let report = [&["report"], &SMALL[..], &["--out", "report.html"]].concat();
+    let report = run_in(folder.path(), &report);
+    assert_eq!(report.status.code(), Some(0), "{}", stderr(&report));
+    let html = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    let (before, section) = html.split_once("What the numbers are worth").unwrap();
+    assert!(!before.contains("<h2>Scenario"));
+    let line = |start: &str| {
+        let (_, rest) = section.split_once(start).unwrap();
+        rest.split("</li>").next().unwrap()
+    };
+    let known = ratios("walk+sph", &["[P/s]", "[P/(m s)]"]);
+    let (center, width) = (center(&known, true, None), width(&known));
+
+    let flow = run["metrics"]["line_flow_per_s"].as_f64().unwrap();
+    let said = line("line_flow_per_s: ");
+    assert!(said.starts_with(&format!(
+        "{flow:.2} P/s; chance and step: not known from one run; "
+    )));
+    let [low, high] = differences(said);
+    assert!(
+        (low - flow * (1.0 - (-center - width).exp())).abs() < 0.005,
+        "{said}"
+    );
+    assert!(
+        (high - flow * ((-center + width).exp() - 1.0)).abs() < 0.005,
+        "{said}"
+    );
+
+    // People queue: what comes after the first has left is as much longer as flows are lower.
+    let secs = run["t95_secs"].as_f64().unwrap();
+    let exits = drawn["exits"].as_array().unwrap().iter();
+    let left = exits.flat_map(|exit| exit["secs"].as_array().unwrap());
+    let first = left
+        .map(|one| one.as_f64().unwrap())
+        .fold(f64::MAX, f64::min);
+    let said = line("95 % out: ");
+    assert!(said.starts_with(&format!(
+        "{secs:.1} s; chance and step: not known from one run; "
+    )));
+    let [low, high] = differences(said);
+    let longer = |by: f64| (secs - first) * (by.exp() - 1.0);
+    assert!((low + longer(center - width)).abs() < 0.05, "{said}");
+    assert!((high - longer(center + width)).abs() < 0.05, "{said}");
 }
 
 #[test]

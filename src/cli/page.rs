@@ -134,7 +134,7 @@ fn write(
     let times = run.frames.times().to_vec();
     let progress = bar(
         times.len() as u64,
-        "{bar:30} {pos} of {len} frames, {eta} left",
+        "{bar:30} {pos} of {len} frames, {left} left",
     );
     for &time in &times {
         run.frames.go_to(time)?;

@@ -1,10 +1,11 @@
 //! Progress of runs and of long computations.
 
+use std::fmt::Write;
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressFinish, ProgressState, ProgressStyle};
 
 use super::failure::Failure;
 use super::terminal::talk;
@@ -17,8 +18,19 @@ use scenario::quote::printable;
 pub fn bar(length: u64, template: &str) -> ProgressBar {
     let parsed = ProgressStyle::with_template(template);
     let style = parsed.unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style = style.with_key("left", |state: &ProgressState, out: &mut dyn Write| {
+        let left = time_left(state.elapsed(), state.pos(), state.len());
+        let _ = write!(out, "{:#}", HumanDuration(left));
+    });
     let bar = ProgressBar::new(length).with_style(style);
     bar.with_finish(ProgressFinish::AndClear)
+}
+
+/// The time that the rest takes if it goes on as fast as what is done has gone so far: unlike an average of the latest
+/// steps, it is right for steps of any size.
+fn time_left(elapsed: Duration, done: u64, all: Option<u64>) -> Duration {
+    let rest = all.unwrap_or_default().saturating_sub(done);
+    elapsed.mul_f64(rest as f64 / done.max(1) as f64)
 }
 
 /// The progress of a run.
@@ -27,7 +39,7 @@ pub struct Progress(ProgressBar);
 impl Progress {
     pub fn new(duration: f64) -> Self {
         let length = (duration * 10.0).ceil() as u64;
-        Self(bar(length, "{bar:30} {msg}, {eta} left"))
+        Self(bar(length, "{bar:30} {msg}, {left} left"))
     }
 
     pub fn show(&self, simulation: &Simulation) {
@@ -62,7 +74,7 @@ impl Default for Watch {
 
 impl Watch {
     pub fn new() -> Self {
-        let template = "{bar:30} {percent} % of the work, {eta} left; {msg}";
+        let template = "{bar:30} {percent} % of the work, {left} left; {msg}";
         Self {
             bar: bar(0, template),
             lines: !std::io::stderr().is_terminal(),
@@ -90,10 +102,10 @@ impl Listener for Watch {
     fn finishes(&self, job: &str, seconds: f64) {
         let text = format!("{job}: {seconds:.1} s");
         if self.lines {
-            let (done, all) = (self.bar.position(), self.bar.length().unwrap_or_default());
-            let left = self.bar.eta().as_secs();
+            let (done, all) = (self.bar.position(), self.bar.length());
+            let left = time_left(self.bar.elapsed(), done, all).as_secs();
             // Cases may take longer than expected.
-            let percent = (100 * done / all.max(1)).min(100);
+            let percent = (100 * done / all.unwrap_or_default().max(1)).min(100);
             talk(&format!("{percent:>3} %, {left} s left; {text}"));
         } else {
             self.bar.set_message(printable(&text));

@@ -61,6 +61,9 @@ pub struct Summary {
     /// Number of agents at the end.
     #[serde(default)]
     pub remaining: usize,
+    /// When the first of them left, seconds.
+    #[serde(default)]
+    pub first_secs: Option<f64>,
     /// When half of the agents that entered had left, seconds.
     #[serde(default)]
     pub t50_secs: Option<f64>,
@@ -146,6 +149,7 @@ impl Summary {
             agents: frame.agents.entered(),
             arrived: outcome.arrivals.len(),
             remaining: frame.agents.count_present(),
+            first_secs: times.first().copied(),
             t50_secs,
             t95_secs,
             t100_secs,

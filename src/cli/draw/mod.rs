@@ -320,7 +320,7 @@ fn draw(
     // A signal ends an animation after a frame, and removes what is written of it.
     let (mut animation, mut interrupt) = (None, None);
     let length = u64::from(if times.is_animation { times.count } else { 0 });
-    let progress = bar(length, "{bar:30} {pos} of {len} frames, {eta} left");
+    let progress = bar(length, "{bar:30} {pos} of {len} frames, {left} left");
     for k in 0..times.count {
         if k > 0 {
             approach(run, &mut trails, [times.at(k - 1), times.at(k)])?;

@@ -81,7 +81,7 @@ fn recorded(
              precision is too coarse"
         ));
     }
-    let template = "{bar:30} {pos} of {len} rows, {eta} left";
+    let template = "{bar:30} {pos} of {len} rows, {left} left";
     let progress = bar(tracks.len() as u64, template);
     let measured = measure(tracks, site, what, |moments| {
         let rows: usize = moments.iter().map(|moment| moment.people.len()).sum();

@@ -130,7 +130,7 @@ impl Model {
                 );
             }
             let flows = self.factors(known, Quantity::Flow)?;
-            let first = mean(all.iter().filter_map(|run| first_secs(run))).unwrap_or(0.0);
+            let first = mean(all.iter().filter_map(|run| run.first_secs)).unwrap_or(0.0);
             let after = value - first;
             let bounds = [first + after / flows.high, first + after / flows.low];
             return Ok(self.bounded(bounds, &flows, true));
@@ -210,12 +210,6 @@ pub fn around(value: f64, bounds: [f64; 2], written: impl Fn(f64) -> String) -> 
 fn has_queue(run: &Summary) -> bool {
     let longest = run.longest_queues.first().map_or(0, |queue| queue.agents);
     f64::from(longest) >= LONG_QUEUE.max(LONG_QUEUE_SHARE * f64::from(run.agents))
-}
-
-/// When the first person left by an exit, seconds.
-fn first_secs(run: &Summary) -> Option<f64> {
-    let times = run.places.iter().filter_map(|place| place.from_to_secs);
-    times.map(|[first, _]| first).reduce(f64::min)
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
