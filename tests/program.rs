@@ -40,6 +40,7 @@ mod measure_safety;
 mod messages;
 mod model_error;
 mod moments;
+mod other_models;
 mod outputs;
 mod page;
 mod paper_page;
