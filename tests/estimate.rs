@@ -209,9 +209,25 @@ fn no_runs_are_added_once_the_error_is_small_enough() {
     for (factor, is_done) in [(1.01 * caution, true), (0.99 * caution, false)] {
         let tolerance = Tolerance::Absolute(factor * reached.error);
         let goal = Goal::new(tolerance, means.clone());
-        let further = further(&[goal], &offers([0, 6, 6]), 0.95);
+        let further = further(&[goal], &offers([6, 7, 7]), &[0, 5, 5], 0.95);
         assert_eq!(further.is_none(), is_done, "{further:?}");
     }
+}
+
+#[test]
+fn an_estimate_ends_with_twenty_runs_some_of_them_at_a_finer_step_than_it_began_with() {
+    let means = means(&[(0.025, &[9.0, 11.0, 10.0]), (0.05, &[10.0, 9.2, 10.8])]);
+    let goal = Goal::new(Tolerance::Relative(0.9), means);
+    let more = |runs: [usize; 3], first: [usize; 3]| {
+        further(std::slice::from_ref(&goal), &offers(runs), &first, 0.95)
+    };
+    assert_eq!(more([0, 6, 5], [0, 5, 5]), Some(vec![6, 3, 0]));
+    assert_eq!(more([0, 15, 15], [0, 5, 5]), Some(vec![6, 0, 0]));
+    assert_eq!(more([2, 15, 15], [0, 5, 5]), Some(vec![4, 0, 0]));
+    assert_eq!(more([6, 7, 7], [0, 5, 5]), None);
+    // No finer step is on offer.
+    assert_eq!(more([5, 15, 0], [5, 5, 0]), None);
+    assert_eq!(more([5, 10, 0], [5, 5, 0]), Some(vec![0, 5, 0]));
 }
 
 #[test]
@@ -231,7 +247,7 @@ fn smaller_errors_are_expected_to_need_more_runs() {
             .sum()
     };
     let counts = [0.2, 0.1, 0.05, 0.02].map(runs);
-    assert_eq!(counts[0], 12, "the fewest runs are enough");
+    assert_eq!(counts[0], 20, "the fewest runs are enough");
     assert!(
         counts.is_sorted() && counts[3] > 4 * counts[1],
         "{counts:?}"

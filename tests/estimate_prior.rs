@@ -110,7 +110,7 @@ fn estimated(prior: &Prior, all: &Series, first: &[usize]) -> (Means, usize) {
         };
         let means = series.means(prior).unwrap();
         let goal = Goal::new(WANTED, means.clone());
-        let more = further(&[goal], &offers(&counts), 0.95);
+        let more = further(&[goal], &offers(&counts), first, 0.95);
         let asked = counts.iter().zip(more.iter().flatten());
         let asked: Vec<usize> = asked.map(|(all, more)| all + more).collect();
         if asked.is_empty() || asked.iter().any(|&count| count > RUNS) {

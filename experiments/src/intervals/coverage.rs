@@ -32,8 +32,11 @@ const MOST_DRAWN: usize = 1000;
 const FACTOR: f64 = 1.5;
 /// The errors that are asked for, in standard deviations of a run at the finest step.
 const ERRORS: [f64; 2] = [1.0, 0.5];
-/// Estimates with fewer runs than this are counted apart.
-const FEW: usize = 20;
+/// The largest part of the value that one standard deviation counts as: nobody asks for an error of several hundred
+/// percent of a rare result.
+const MOST_ASKED: f64 = 0.5;
+/// Estimates with fewer runs than this are counted apart: twice the fewest.
+const FEW: usize = 40;
 
 /// The size of a study of intervals.
 #[derive(Debug, Clone, Copy)]
@@ -95,9 +98,9 @@ pub struct Covered {
     pub planned: Option<[usize; 2]>,
     /// The number of estimates whose number of runs is between these.
     pub in_plan: usize,
-    /// Of the estimates with fewer than 20 runs, those whose interval holds the mean at the finest step, and all.
+    /// Of the estimates with fewer than 40 runs, those whose interval holds the mean at the finest step, and all.
     pub few: [usize; 2],
-    /// The same of those with 20 runs and more.
+    /// The same of those with 40 runs and more.
     pub many: [usize; 2],
 }
 
@@ -223,7 +226,7 @@ fn covered(
     }
     let wanted = &Wanted {
         name: name.clone(),
-        error: Tolerance::Relative(error * spread / finest_mean.mean.abs()),
+        error: Tolerance::Relative(error * (spread / finest_mean.mean.abs()).min(MOST_ASKED)),
     };
     let reference = whole.reached(CONFIDENCE);
     let prior = &runs.priors[k];
@@ -365,6 +368,6 @@ impl Pooled<'_> {
         let offers: Vec<Offer> = offers
             .map(|(offer, &runs)| Offer { runs, ..*offer })
             .collect();
-        further(&[goal], &offers, CONFIDENCE)
+        further(&[goal], &offers, self.first, CONFIDENCE)
     }
 }

@@ -47,7 +47,7 @@ impl Coverage {
         Share::of(inside, rows().map(|row| row.estimates).sum())
     }
 
-    /// The shares of intervals that hold the value: of estimates with fewer than 20 runs, and of the others.
+    /// The shares of intervals that hold the value: of estimates with fewer than 40 runs, and of the others.
     fn by_runs(&self) -> [Share; 2] {
         let of = |counts: &dyn Fn(&Covered) -> [usize; 2]| {
             let sum = |k: usize| self.rows.iter().map(|row| counts(row)[k]).sum();
@@ -87,7 +87,7 @@ impl Coverage {
         };
         format!(
             "{} % intervals hold the value in {} of all estimates: {made_on} on the scenes on which the method was \
-             made, {written_after} on those written after it was fixed; {few} with fewer than 20 runs and {many} with \
+             made, {written_after} on those written after it was fixed; {few} with fewer than 40 runs and {many} with \
              more; by scene: {}. The number of runs is in the range of a plan without runs of the scene in {}; worst \
              row {:.1} %. Median over the rows: {:.1} \
              times the runs and {:.1} times the time of an estimate for which spread and error of the step are known. \

@@ -7,11 +7,14 @@
 
 use super::limit::Limit;
 use super::prior::Prior;
-use super::series::{Means, Reached};
+use super::series::{FEWEST, Means, Reached};
 use super::wanted::Tolerance;
 
 /// The runs of the first round at each of its two steps, if nothing is known before.
 const PILOT: usize = 5;
+/// The runs at a finer step than those of the first round, without which nothing is reached: at long steps a crowd may
+/// behave otherwise, as at a door that jams only at short ones.
+const FINER: usize = 6;
 /// A plan with at most this number of runs is carried out at once.
 const FEW: usize = 6;
 /// The most runs that are tried to find the first step.
@@ -41,8 +44,8 @@ pub struct Goal {
     pub means: Means,
     /// Their limit of fine steps, by which the means of further runs are expected.
     pub limit: Limit,
-    /// The fewest runs that say how far the result varies.
-    pub(super) fewest: usize,
+    /// Whether runs differ by chance: if not, two of them say all.
+    has_chance: bool,
 }
 
 impl Goal {
@@ -51,7 +54,7 @@ impl Goal {
         let limit = means.limit();
         Self {
             tolerance,
-            fewest: means.fewest(),
+            has_chance: true,
             means,
             limit,
         }
@@ -59,7 +62,10 @@ impl Goal {
 
     /// The goal of a result that nothing in the runs leaves to chance: any number of runs says it.
     pub(super) fn without_chance(self) -> Self {
-        Self { fewest: 0, ..self }
+        Self {
+            has_chance: false,
+            ..self
+        }
     }
 
     /// Before the first run: the value is 1. `None` if no spread is known, or if the error is asked for in the result's
@@ -69,7 +75,7 @@ impl Goal {
         let limit = Limit::exact(1.0);
         matches!(tolerance, Tolerance::Relative(_)).then_some(Self {
             tolerance,
-            fewest: means.fewest(),
+            has_chance: true,
             means,
             limit,
         })
@@ -82,8 +88,13 @@ impl Goal {
 }
 
 /// The number of further runs at each of `offers`, which are in order from the finest to the coarsest step; `None` if
-/// all goals are reached, with enough runs to say so.
-pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<usize>> {
+/// all goals are reached, with enough runs to say so. `first` are the runs of the first round.
+pub fn further(
+    goals: &[Goal],
+    offers: &[Offer],
+    first: &[usize],
+    confidence: f64,
+) -> Option<Vec<usize>> {
     let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
     let excess = |plan: &[usize]| -> f64 {
         let after = goals.iter().map(|goal| {
@@ -96,10 +107,17 @@ pub fn further(goals: &[Goal], offers: &[Offer], confidence: f64) -> Option<Vec<
     let mut left = excess(&plan);
     let runs: usize = offers.iter().map(|offer| offer.runs).sum();
     if left <= 0.0 {
-        let fewest = goals.iter().map(|goal| goal.fewest).max()?;
+        if !goals.iter().any(|goal| goal.has_chance) {
+            return None;
+        }
+        let begun = first.iter().position(|&runs| runs > 0);
+        if let Some(finer) = begun.and_then(|k| k.checked_sub(1)) {
+            let looked: usize = offers[..=finer].iter().map(|offer| offer.runs).sum();
+            plan[finer] = FINER.saturating_sub(looked);
+        }
         let most = (0..offers.len()).max_by_key(|&k| offers[k].runs)?;
-        plan[most] = fewest.saturating_sub(runs);
-        return (plan[most] > 0).then_some(plan);
+        plan[most] += FEWEST.saturating_sub(runs + plan.iter().sum::<usize>());
+        return plan.iter().any(|&runs| runs > 0).then_some(plan);
     }
     // A step that is finer than half of the finest one so far is left to the next plan.
     let tried = offers.iter().position(|offer| offer.runs > 0);
@@ -179,9 +197,9 @@ pub fn predicted(
     (confidence, most): (f64, usize),
 ) -> (Vec<usize>, Vec<f64>) {
     let steps: Vec<f64> = offers.iter().map(|offer| offer.step).collect();
-    let begun = offers.iter().zip(first);
+    let begun = offers.iter().zip(&first);
     let mut offers: Vec<Offer> = begun
-        .map(|(offer, runs)| Offer { runs, ..*offer })
+        .map(|(offer, &runs)| Offer { runs, ..*offer })
         .collect();
     loop {
         let counts: Vec<usize> = offers.iter().map(|offer| offer.runs).collect();
@@ -191,7 +209,7 @@ pub fn predicted(
         };
         let goals: Vec<Goal> = known.iter().map(after).collect();
         let room = most.saturating_sub(counts.iter().sum());
-        let Some(more) = further(&goals, &offers, confidence).filter(|_| room > 0) else {
+        let Some(more) = further(&goals, &offers, &first, confidence).filter(|_| room > 0) else {
             let errors = goals.iter().map(|goal| goal.reached(confidence).error);
             return (counts, errors.collect());
         };

@@ -148,8 +148,8 @@ impl<'a> Runs<'a> {
         let first = first.unwrap_or_else(|| pilot(&self.offers(), self.question.start));
         let made = self.counts().into_iter();
         let mut wanted: Vec<usize> = made
-            .zip(first)
-            .map(|(made, first)| made.max(first))
+            .zip(&first)
+            .map(|(made, &first)| made.max(first))
             .collect();
         loop {
             let limit = self.cut(&mut wanted, elapsed());
@@ -157,7 +157,7 @@ impl<'a> Runs<'a> {
             self.look();
             listener.notes(&self.progress());
             let goals: Vec<Goal> = self.goals().flatten().cloned().collect();
-            let Some(more) = further(&goals, &self.offers(), confidence) else {
+            let Some(more) = further(&goals, &self.offers(), &first, confidence) else {
                 return Ok(());
             };
             if limit.is_some() {

@@ -12,11 +12,9 @@ use analysis::round;
 use analysis::statistics::{MeanStd, student, upper_std};
 
 /// Fewer runs than this do not say how far a result varies: an estimate that ends after the first of them that happen
-/// to agree ends too early.
-const FEWEST: usize = 12;
-/// The fewest runs of a result that has the same value in all of them: 95 % of such results have another value in at
-/// most 14 % of runs.
-const FEWEST_ALIKE: usize = 20;
+/// to agree ends too early. 95 % of the results that have the same value in all of them have another value in at most
+/// 14 % of runs.
+pub(super) const FEWEST: usize = 20;
 /// An estimate ends when an upper limit of the spread, which holds with this probability, makes its error small enough.
 const CAUTION: f64 = 0.7;
 /// The part by which skewness, over √n, widens the error from the seeds. Johnson's t (1978) has (1 + 2 t²)/6 t, about
@@ -197,14 +195,6 @@ impl Means {
     /// The standard deviation of the logarithm of the spread.
     pub(super) fn spread_uncertainty(&self) -> f64 {
         (0.5 / self.degrees.max(f64::MIN_POSITIVE)).sqrt()
-    }
-
-    /// The fewest runs that say how far the result varies.
-    pub(super) fn fewest(&self) -> usize {
-        match self.variance > 0.0 {
-            true => FEWEST,
-            false => FEWEST_ALIKE,
-        }
     }
 
     /// By how much the variance of the limit exceeds what the error allows, as a logarithm; 0 if it does not.
