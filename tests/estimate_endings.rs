@@ -15,7 +15,7 @@ struct Said {
 /// The steps on offer, seconds.
 const STEPS: [f64; 4] = [0.0025, 0.005, 0.01, 0.02];
 /// No estimate here takes more runs.
-const MOST: usize = 20_000;
+const MOST: usize = 3000;
 
 /// An estimate of values that have no error of the step.
 fn estimated(

@@ -390,11 +390,11 @@ fn a_result_that_some_runs_lack_is_not_reached() {
         folder.path(),
         &[&scene[..], &["--error", "t100_secs=20%", "--json"]].concat(),
     );
-    // The last of the first four runs ends after this duration.
-    let steps = &json(&whole)["estimate"]["results"][0]["steps"];
-    let mut first: Vec<f64> = (0..4)
-        .map(|k| steps[0]["values"][k].as_f64().unwrap())
-        .collect();
+    // The last of the first four runs, which are those of the longest step, ends after this duration.
+    let whole = json(&whole);
+    let steps = whole["estimate"]["results"][0]["steps"].as_array().unwrap();
+    let values = &steps.last().unwrap()["values"];
+    let mut first: Vec<f64> = (0..4).map(|k| values[k].as_f64().unwrap()).collect();
     first.sort_by(f64::total_cmp);
     let duration = format!("duration_secs={}", 0.5 * (first[2] + first[3]));
     let ask = ["--error", "t100_secs=20%", "--set", &duration];

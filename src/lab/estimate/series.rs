@@ -221,14 +221,15 @@ impl Means {
     pub fn with(&self, expected: &Limit, steps: &[f64], further: &[usize]) -> Self {
         let mut after = self.clone();
         for (&step, &runs) in steps.iter().zip(further).filter(|(_, runs)| **runs > 0) {
+            let mean = expected.at(step);
             match after.levels.iter_mut().find(|level| level.step == step) {
                 Some(level) => {
                     level.runs += runs;
+                    level.mean += (mean - level.mean) * runs as f64 / level.runs as f64;
                     after.degrees += runs as f64;
                 }
                 None => {
                     after.degrees += (runs - 1) as f64;
-                    let mean = expected.at(step);
                     after.levels.push(Level { step, runs, mean });
                 }
             }
