@@ -1,4 +1,4 @@
-//! Another simulator in place of ours: a command that takes scenes as files and writes trajectories, which are measured.
+//! Another simulator in place of ours: a command that reads scenes and writes trajectories, which are measured.
 
 use std::fs;
 use std::path::Path;
