@@ -34,6 +34,7 @@ mod floor_plan_robustness;
 mod floor_plan_unions;
 mod floor_plan_xml;
 mod forces;
+mod forks;
 mod from_data;
 mod front;
 mod geometry;

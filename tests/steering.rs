@@ -102,6 +102,7 @@ fn agents_leave_a_queue_and_the_others_move_up() {
     let (_, second) = before[1];
     let goal = Vector::new(2.0, 1.0);
     simulation.set_goals(&[(second, goal)]).unwrap();
+    simulation.evaluate().unwrap();
     let behind = queued(&simulation);
     let order = |all: &[(u32, u32)]| -> Vec<u32> { all.iter().map(|&(_, id)| id).collect() };
     let mut expected = order(&before);

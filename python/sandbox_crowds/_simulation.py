@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import collections
 import json
 import operator
 import os
 from typing import TYPE_CHECKING, Any
 
 from . import _given, _tables
-from ._native import Error
+from ._native import Error, Native
 
 if TYPE_CHECKING:
     import numpy
@@ -42,7 +43,12 @@ class Simulation:
 
         Raises `Error` with the place and the fix if something is invalid.
         """
-        self._native = _given.native(scenario, geometry, settings)
+        self._begin(_given.native(scenario, geometry, settings))
+
+    def _begin(self, native: Native) -> None:
+        self._native = native
+        self._kept: collections.deque[Native] | None = None
+        self._every = 0
 
     def step(self, frames: int = 1) -> None:
         """Simulates `frames` frames, also beyond the end of the scenario.
@@ -53,7 +59,8 @@ class Simulation:
         if left < 0:
             raise Error(f"frames={left}: give 0 or more")
         while left > 0:
-            left -= self._native.advance(min(left, 1 << 62), SLICE, False)
+            left -= self._native.advance(min(left, self._until_kept()), SLICE, False)
+            self._keep_if_due()
 
     @property
     def frame(self) -> int:
@@ -132,6 +139,73 @@ class Simulation:
                 f"goal: a point [x, y], or one for each of {len(ids)} agents, not an array of shape {points.shape}"
             )
         self._native.set_goals(list(zip(numbers, points.tolist())))
+        if self._kept is not None:
+            if self._kept[-1].frame == self.frame:
+                self._kept.pop()
+            self._kept.append(self._native.fork())
+
+    def fork(self) -> Simulation:
+        """An independent copy in the same frame, with all measurements so far.
+
+        Both go on to the same bits if the same is done to them. Walls, path maps and the scenario are shared, so a fork
+        costs some 1 kB per agent. Snapshots of `keep` are not copied.
+        """
+        fork = Simulation.__new__(Simulation)
+        fork._begin(self._native.fork())
+        return fork
+
+    def save(self) -> bytes:
+        """The state in the current frame as bytes: those of a checkpoint, which `sandbox resume` reads, too."""
+        return self._native.save()
+
+    @staticmethod
+    def restore(saved: bytes) -> Simulation:
+        """The simulation that was saved, in the same frame; it goes on to the same bits.
+
+        Raises `Error` if the bytes are damaged, or of another version of the program.
+        """
+        restored = Simulation.__new__(Simulation)
+        restored._begin(Native.restored(bytes(saved)))
+        return restored
+
+    def keep(self, every: float = 1.0, most: int = 60) -> None:
+        """Keeps a snapshot now and every `every` seconds, for `rewind`: the latest `most` of them, each a fork. A new
+        goal is kept, too."""
+        if not (every > 0 and operator.index(most) > 0):
+            raise Error(f"every={every}, most={most}: give numbers above 0")
+        self._every = max(1, round(every / self.time_step))
+        self._kept = collections.deque([self._native.fork()], maxlen=most)
+
+    def rewind(self, secs: float) -> None:
+        """Goes back by `secs` seconds, to the frame at that time: exactly as it was. What was done since is undone.
+
+        Raises `Error` without `keep`, or if the time is before the first snapshot that is kept.
+        """
+        if self._kept is None:
+            raise Error("rewind: call keep() first, from which on one can go back")
+        if not secs >= 0:
+            raise Error(f"secs={secs}: give 0 or more")
+        native = self._native
+        frame = native.frame - round(secs / native.time_step)
+        first = self._kept[0]
+        if frame < first.frame:
+            raise Error(
+                f"secs={secs}: that is before {first.time:.2f} s, the first snapshot that is kept; keep more of them"
+            )
+        while self._kept[-1].frame > frame:
+            self._kept.pop()
+        self._native = self._kept[-1].fork()
+        self.step(frame - self.frame)
+
+    def _until_kept(self) -> int:
+        """The number of frames until the next snapshot."""
+        if self._kept is None:
+            return 1 << 62
+        return max(1, self._kept[-1].frame + self._every - self.frame)
+
+    def _keep_if_due(self) -> None:
+        if self._kept is not None and self.frame >= self._kept[-1].frame + self._every:
+            self._kept.append(self._native.fork())
 
     def inspect(self, agent: int) -> dict[str, Any]:
         """Every force on an agent in the current frame, as `sandbox inspect --json` prints them: accelerations in m/s²,

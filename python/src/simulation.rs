@@ -1,14 +1,16 @@
 //! A run, frame by frame. Between calls, its current frame is evaluated: positions, densities and forces match.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
-use pyo3::types::{PyByteArray, PyDict};
+use pyo3::types::{PyByteArray, PyBytes, PyDict};
 use sandbox::cli::json_report;
 use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::frame::Frame;
 use sandbox::engine::simulation::Fault;
 use sandbox::output::trajectory::{Collected, Columns, frames_between, walkable_area};
+use sandbox::runs::checkpoint::Checkpoint;
 use sandbox::runs::drive::Run;
 
 use crate::given::{Given, check_memory};
@@ -202,6 +204,47 @@ impl Native {
         })
     }
 
+    /// An independent copy in the same frame.
+    fn fork(&self, py: Python<'_>) -> PyResult<Self> {
+        check_process()?;
+        let run = py.detach(|| self.run.fork()).map_err(error)?;
+        Ok(Self {
+            run,
+            collected: None,
+            order: None,
+        })
+    }
+
+    /// The state as the bytes of a checkpoint.
+    fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        check_process()?;
+        let Run {
+            scenario,
+            simulation,
+            metrics,
+            ..
+        } = &self.run;
+        let bytes = py.detach(|| Checkpoint::of(scenario, simulation, metrics).bytes());
+        Ok(PyBytes::new(py, &bytes.map_err(error)?))
+    }
+
+    /// A simulation that goes on from saved bytes.
+    #[staticmethod]
+    fn restored(py: Python<'_>, saved: Vec<u8>) -> PyResult<Self> {
+        check_process()?;
+        py.detach(|| {
+            let checkpoint = Checkpoint::parse(&saved, Path::new("saved")).map_err(error)?;
+            if !checkpoint.is_of_this_engine() {
+                return Err(error(
+                    "saved: it is of another version of the program, which may go on to other bits",
+                ));
+            }
+            let scenario = checkpoint.scenario(&[]).map_err(error)?;
+            let run = checkpoint.resume(scenario).map_err(error)?;
+            rayon::scope(|_| Self::of(run, None))
+        })
+    }
+
     /// Every force on an agent, as JSON.
     fn inspect(&self, id: u32) -> PyResult<String> {
         let simulation = &self.run.simulation;
@@ -246,6 +289,11 @@ impl Native {
             collected.map_err(|reason| error(format!("fps: {reason}")))
         });
         let collected = collected.transpose()?;
+        Self::of(run, collected)
+    }
+
+    /// A run in its current frame, which is evaluated.
+    fn of(mut run: Run, collected: Option<Collected>) -> PyResult<Self> {
         // Densities depend on those before, so every frame needs them.
         run.simulation.request_density_until(u64::MAX);
         let mut new = Self {

@@ -42,7 +42,7 @@ pub use state::{State, StateError};
 pub use stream::Stream;
 pub use times::RouteProspect;
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use serde::{Deserialize, Serialize};
 
@@ -66,7 +66,8 @@ use crate::scene::{Needs, Scene};
 /// threads, because every agent reads the frozen frame and writes only its own slot.
 #[derive(Clone)]
 pub struct Simulation {
-    fixed: Fixed,
+    /// Shared by its [forks](Self::fork) until one of them changes.
+    fixed: Arc<Fixed>,
     crowd: Crowd,
     derived: Derived,
     buffers: Buffers,
@@ -96,6 +97,8 @@ struct Crowd {
     schedule: schedule::Schedule,
     progress: Progress,
     outcome: Outcome,
+    /// Goals from outside that agents get in a later frame.
+    new_goals: Vec<goals::NewGoal>,
     /// Whether agents have entered or left since they were last sorted.
     changed: bool,
     /// Whether entries, choices and all other changes of the state in a coarse frame have been made in this frame. They
@@ -230,6 +233,7 @@ impl Simulation {
             schedule: schedule::Schedule::default(),
             progress: Progress::default(),
             outcome: Outcome::default(),
+            new_goals: Vec::new(),
             changed: true,
             decided: false,
         };
@@ -245,12 +249,19 @@ impl Simulation {
                 evaluated: false,
                 finite: true,
             },
-            fixed,
+            fixed: Arc::new(fixed),
             crowd,
             buffers: Buffers::default(),
             stages: StageTimes::default(),
             density_until: 0,
         })
+    }
+
+    /// An independent copy in the same frame. Both go on to the same bits if the same is done to them, on any number of
+    /// threads. What cannot change, such as walls and path maps, is shared.
+    #[must_use]
+    pub fn fork(&self) -> Self {
+        self.clone()
     }
 
     /// Simulates one frame.
@@ -277,6 +288,7 @@ impl Simulation {
     }
 
     fn compute(&mut self) -> Result<(), Fault> {
+        self.take_goals();
         self.follow_schedule()?; // entries and pushes, coarse
         self.count_streams(); // once per second
         self.follow_journeys(); // coarse
@@ -325,7 +337,8 @@ impl Simulation {
     /// the time that is saved by not computing them. Agents are sorted again; their motion stays identical to the last
     /// bit.
     pub fn pay_for(&mut self, more: &Needs) {
-        self.fixed.needs = self.fixed.needs.with(more);
+        let fixed = Arc::make_mut(&mut self.fixed);
+        fixed.needs = fixed.needs.with(more);
         self.crowd.changed = true; // rebuild neighbor lists with the new ranges
     }
 

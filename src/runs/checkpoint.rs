@@ -7,6 +7,7 @@
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -22,7 +23,7 @@ use scenario::{Draft, Scenario, ScenarioError, Setting};
 /// The first bytes of every file.
 const MAGIC: &[u8] = b"sandbox checkpoint\n";
 /// Format version: increase it with every change to the contents of a file.
-const VERSION: u32 = 16;
+const VERSION: u32 = 17;
 /// Longest file that is read, bytes. Ten million agents, the most allowed, take 1 GB (99 bytes each, in the plaza),
 /// and the text of their scenario takes at most 256 MiB.
 const LONGEST: u64 = 1 << 32;
@@ -112,14 +113,20 @@ impl Checkpoint {
     /// # Errors
     /// The state, or that of a measurement, does not match the scenario.
     pub fn resume(self, scenario: Scenario) -> Result<Run, ResumeError> {
-        let mut simulation = Simulation::resumed(scenario.scene.clone(), self.state)?;
+        let mut scene = scenario.scene.clone();
+        if self.state.has_routes() && scene.routes.is_none() {
+            // They were added for goals from outside.
+            let floor = scenario.floor().map_err(|_| StateError)?;
+            scene.routes = floor.map(Arc::new);
+        }
+        let mut simulation = Simulation::resumed(scene, self.state)?;
         let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
         let frame = simulation.frame().clock.frame();
         metrics
             .resume(&self.seen, frame)
             .map_err(ResumeError::Measurements)?;
         Ok(Run {
-            scenario,
+            scenario: Arc::new(scenario),
             simulation,
             metrics,
             end: None,
@@ -135,15 +142,28 @@ impl Checkpoint {
             path: path.to_owned(),
             reason,
         };
-        let payload = postcard::to_stdvec(self).map_err(|error| failed(error.to_string()))?;
+        let parts = self.parts().map_err(|error| failed(error.to_string()))?;
         let written = write_whole(path, |file| {
-            file.write_all(MAGIC)?;
-            file.write_all(&VERSION.to_le_bytes())?;
-            file.write_all(&Sha256::digest(&payload))?;
-            file.write_all(&payload)?;
+            parts.iter().try_for_each(|part| file.write_all(part))?;
             file.sync_all()
         });
         written.map_err(|error| failed(error.to_string()))
+    }
+
+    /// The bytes of its file, in four parts.
+    fn parts(&self) -> postcard::Result<[Vec<u8>; 4]> {
+        let payload = postcard::to_stdvec(self)?;
+        let sum = Sha256::digest(&payload).to_vec();
+        let version = VERSION.to_le_bytes().to_vec();
+        Ok([MAGIC.to_vec(), version, sum, payload])
+    }
+
+    /// The bytes of its file, which [`parse`](Self::parse) reads.
+    ///
+    /// # Errors
+    /// There is not enough memory.
+    pub fn bytes(&self) -> postcard::Result<Vec<u8>> {
+        Ok(self.parts()?.concat())
     }
 
     /// Reads a checkpoint.

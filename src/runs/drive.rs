@@ -1,6 +1,7 @@
 //! The drive loop: a scenario from its first frame to its end.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
@@ -11,8 +12,8 @@ use scenario::measurements::Metrics;
 
 /// A run of a scenario, with its measurements.
 pub struct Run {
-    /// The scenario, with its initial agents.
-    pub scenario: Scenario,
+    /// The scenario, with its initial agents; shared by its forks.
+    pub scenario: Arc<Scenario>,
     /// Its simulation.
     pub simulation: Simulation,
     /// Its measurements.
@@ -63,10 +64,28 @@ impl Run {
         let mut simulation = Simulation::new(scenario.scene.clone())?;
         let metrics = Metrics::new(&scenario.measurements, &mut simulation);
         Ok(Self {
-            scenario,
+            scenario: Arc::new(scenario),
             simulation,
             metrics,
             end: None,
+        })
+    }
+
+    /// An independent copy in the same frame, with all that was measured so far.
+    ///
+    /// # Errors
+    /// A measurement cannot read what it has seen.
+    pub fn fork(&self) -> Result<Self, String> {
+        let mut simulation = self.simulation.fork();
+        let mut metrics = Metrics::new(&self.scenario.measurements, &mut simulation);
+        if let Some(frame) = self.metrics.observed() {
+            metrics.resume(&self.metrics.seen(), frame)?;
+        }
+        Ok(Self {
+            scenario: self.scenario.clone(),
+            simulation,
+            metrics,
+            end: self.end,
         })
     }
 

@@ -1,6 +1,9 @@
 //! New goals for agents, set from outside between two frames.
 
+use std::collections::HashSet;
 use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
 
 use super::{Crowd, Simulation};
 use crate::journeys::Status;
@@ -60,6 +63,15 @@ pub enum GoalError {
     Way(#[from] WayError),
 }
 
+/// A goal that an agent gets at the beginning of a frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct NewGoal {
+    frame: u64,
+    id: u32,
+    /// Meters.
+    goal: Vector,
+}
+
 impl Simulation {
     /// The index of agent `id` in the current frame.
     ///
@@ -78,31 +90,45 @@ impl Simulation {
         }
     }
 
-    /// Gives agents, by id, new goals in meters. They walk there from the next frame on, around walls if the scene has
-    /// path maps. An agent on a journey abandons it and stays at its goal. Other agents leave at their goal if their
-    /// group does.
+    /// Gives agents, by id, new goals in meters. They walk there from the next evaluated frame on, around walls if the
+    /// scene has path maps. An agent on a journey abandons it and stays at its goal. Other agents leave at their goal if
+    /// their group does. Agents that leave before that frame are left alone.
     ///
     /// # Errors
     /// An agent is absent or walks in a direction, or a goal is not on the floor or cannot be reached. Then no agent
     /// gets a new goal.
     pub fn set_goals(&mut self, new: &[(u32, Vector)]) -> Result<(), GoalError> {
-        let new = self.indexed(new)?;
-        self.find_routes(&new)?;
-        for &(i, goal) in &new {
+        let indexed = self.indexed(new)?;
+        let ids: HashSet<u32> = new.iter().map(|&(id, _)| id).collect();
+        self.find_routes(&indexed, &ids)?;
+        let frame = self.crowd.clock.frame() + u64::from(self.derived.evaluated);
+        let waiting = &mut self.crowd.new_goals;
+        waiting.retain(|old| !ids.contains(&old.id));
+        waiting.extend(new.iter().map(|&(id, goal)| NewGoal { frame, id, goal }));
+        Ok(())
+    }
+
+    /// Gives agents the new goals of this frame.
+    pub(super) fn take_goals(&mut self) {
+        let frame = self.crowd.clock.frame();
+        let is_due = |new: &mut NewGoal| new.frame <= frame;
+        let due: Vec<NewGoal> = self.crowd.new_goals.extract_if(.., is_due).collect();
+        for NewGoal { id, goal, .. } in due {
+            let Some(i) = self.crowd.agents.index_of(id) else {
+                continue;
+            };
             self.crowd.leave_journey(&self.fixed.scene, i);
             let agents = &mut self.crowd.agents;
             agents.goal[i] = goal;
             agents.forget_route(i);
         }
-        Ok(())
     }
 
     /// From now on, agents find their routes on this floor. No effect if the scene has path maps already.
     pub fn add_routes(&mut self, routes: Routes) {
-        self.fixed
-            .scene
-            .routes
-            .get_or_insert_with(|| Arc::new(routes));
+        if self.fixed.scene.routes.is_none() {
+            Arc::make_mut(&mut self.fixed).scene.routes = Some(Arc::new(routes));
+        }
     }
 
     /// The indices of the agents, with their new goals.
@@ -130,15 +156,19 @@ impl Simulation {
         indexed.collect()
     }
 
-    /// Makes path maps to goals of several agents, and to those behind walls.
-    fn find_routes(&mut self, new: &[(usize, Vector)]) -> Result<(), GoalError> {
-        let scene = &mut self.fixed.scene;
+    /// Makes path maps to goals of several agents, and to those behind walls, for agents with these ids.
+    fn find_routes(
+        &mut self,
+        new: &[(usize, Vector)],
+        ids: &HashSet<u32>,
+    ) -> Result<(), GoalError> {
         let agents = &self.crowd.agents;
-        let Some(routes) = &mut scene.routes else {
-            return Ok(());
-        };
         let mut last = None;
         for &(i, goal) in new {
+            let scene = &self.fixed.scene;
+            let Some(routes) = &scene.routes else {
+                return Ok(());
+            };
             let to = Destination::Goal(goal);
             let is_shared = last.replace(goal) == Some(goal);
             let position = agents.position[i];
@@ -151,16 +181,25 @@ impl Simulation {
                 if !is_shared && !is_blocked() {
                     continue;
                 }
-                let is_used = |other| {
-                    agents.goal.contains(&other) || new.iter().any(|&(_, goal)| goal == other)
+                let is_new = |other| {
+                    let waiting = self.crowd.new_goals.iter();
+                    let waiting = waiting
+                        .filter(|old| !ids.contains(&old.id))
+                        .map(|old| old.goal);
+                    let new = new.iter().map(|&(_, goal)| goal);
+                    waiting.chain(new).any(|goal| goal == other)
                 };
-                let made = Arc::make_mut(routes).add_goal(goal, is_used);
+                let is_used = |other| agents.goal.contains(&other) || is_new(other);
+                let fixed = Arc::make_mut(&mut self.fixed);
+                let routes = fixed.scene.routes.as_mut().map(Arc::make_mut);
+                let made = routes.map_or(Ok(()), |routes| routes.add_goal(goal, is_used));
                 made.map_err(|error| match error {
                     WayError::NotOnFloor(_) => GoalError::NotOnFloor(goal),
                     error => error.into(),
                 })?;
             }
-            if routes.way(position, to).is_none() {
+            let routes = self.fixed.scene.routes.as_ref();
+            if routes.is_some_and(|routes| routes.way(position, to).is_none()) {
                 return Err(GoalError::NoWay {
                     agent: agents.id[i],
                     from: position,

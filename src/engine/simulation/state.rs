@@ -1,7 +1,10 @@
 //! Everything that a simulation keeps from one frame to the next, for saving and resuming.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
+use super::goals::NewGoal;
 use super::integrate::shift;
 use super::schedule::Schedule;
 use super::trips;
@@ -27,6 +30,10 @@ pub struct State {
     schedule: Schedule,
     progress: Progress,
     outcome: Outcome,
+    /// Goals from outside that agents get in a later frame.
+    new_goals: Vec<NewGoal>,
+    /// Goals from outside that have path maps, in the order of these maps; `None` if agents do not find their routes.
+    mapped_goals: Option<Vec<Vector>>,
     /// Whether the density was computed in this frame.
     has_density: bool,
 }
@@ -38,8 +45,7 @@ pub struct StateError;
 
 impl Simulation {
     /// The state of the current frame. A resumed run evaluates the frame again if it was evaluated, and makes no
-    /// decision twice. Take it before [`set_goals`](Self::set_goals): the agents of a resumed run would walk to new
-    /// goals one frame earlier.
+    /// decision twice.
     pub fn state(&self) -> State {
         let crowd = &self.crowd;
         State {
@@ -51,6 +57,13 @@ impl Simulation {
             schedule: crowd.schedule.clone(),
             progress: crowd.progress.clone(),
             outcome: crowd.outcome.clone(),
+            new_goals: crowd.new_goals.clone(),
+            mapped_goals: self
+                .fixed
+                .scene
+                .routes
+                .as_ref()
+                .map(|routes| routes.added_goals().to_vec()),
             has_density: !self.derived.fields.density.is_empty(),
         }
     }
@@ -60,10 +73,15 @@ impl Simulation {
     /// # Errors
     /// The state does not fit the scene.
     pub fn resumed(scene: Scene, mut state: State) -> Result<Self, StateError> {
-        let empty = Scene {
+        let mut empty = Scene {
             agents: Vec::new(),
             ..scene
         };
+        for &goal in state.mapped_goals.iter().flatten() {
+            let routes = empty.routes.as_mut().map(Arc::make_mut);
+            let added = routes.map(|routes| routes.add_goal(goal, |_| true));
+            added.ok_or(StateError)?.map_err(|_| StateError)?;
+        }
         let mut simulation = Self::new(empty).map_err(|_| StateError)?;
         state.check(&simulation.fixed.scene)?;
         let crowd = &mut simulation.crowd;
@@ -77,6 +95,7 @@ impl Simulation {
         crowd.schedule = state.schedule;
         crowd.progress = state.progress;
         crowd.outcome = state.outcome;
+        crowd.new_goals = state.new_goals;
         crowd.changed = state.crowd_changed;
         crowd.decided = state.decided;
         if !state.crowd_changed {
@@ -111,6 +130,11 @@ impl Simulation {
 }
 
 impl State {
+    /// Whether agents find their routes: the scene needs path maps, also if it has none at the start.
+    pub fn has_routes(&self) -> bool {
+        self.mapped_goals.is_some()
+    }
+
     /// Whether this state fits `scene`.
     fn check(&mut self, scene: &Scene) -> Result<(), StateError> {
         let is_whole = self.agents.is_whole();

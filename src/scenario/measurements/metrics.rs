@@ -108,6 +108,11 @@ impl Metrics {
         all.filter_map(|measurement| measurement.data())
     }
 
+    /// The number of the last observed frame.
+    pub fn observed(&self) -> Option<u64> {
+        self.observed
+    }
+
     /// What each measurement has seen so far, as JSON.
     pub fn seen(&self) -> Vec<String> {
         let seen = self.running.iter().map(|one| one.seen().to_string());

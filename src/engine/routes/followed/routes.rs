@@ -101,6 +101,11 @@ impl Routes {
         Ok(())
     }
 
+    /// The goals whose path maps were added later, in the order of their maps, meters.
+    pub fn added_goals(&self) -> &[Vector] {
+        &self.goals[self.first_goals..]
+    }
+
     /// The way from `p` to a destination; `None` if there is none, or no map of it.
     pub fn way(&self, p: Vector, to: Destination) -> Option<Way> {
         self.maps[usize::from(self.map_to(to)?)].way_from(&self.floor, p)
