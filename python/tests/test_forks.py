@@ -1,6 +1,9 @@
 """Forks, saved states and going back: all go on to the same bits."""
 
+import json
 import random
+import subprocess
+import sys
 
 import numpy
 import pytest
@@ -98,3 +101,27 @@ def test_what_cannot_be_done_is_said(corridor, act, message):
     simulation = sc.Simulation(corridor)
     with pytest.raises(sc.Error, match=message):
         act(simulation)
+
+
+def test_the_program_goes_on_from_saved_bytes_and_python_from_a_checkpoint(corridor, tmp_path):
+    simulation = sc.Simulation(corridor)
+    simulation.step(20)
+    simulation.set_goal([0, 1], [2, 1])
+    file = tmp_path / "saved.checkpoint"
+    file.write_bytes(simulation.save())
+    command = [sys.executable, "-m", "sandbox_crowds", "resume", str(file), "--json"]
+    resumed = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
+    while simulation.end is None:
+        simulation.step()
+    assert resumed["state_sha256"] == simulation.state_sha256
+    assert resumed["metrics"] == simulation.measurements["metrics"]
+
+    scenario = tmp_path / "corridor.json"
+    scenario.write_text(json.dumps(corridor))
+    kept = tmp_path / "kept.checkpoint"
+    run = [sys.executable, "-m", "sandbox_crowds", "run", str(scenario), "--json", "--until", "2"]
+    subprocess.run([*run, "--checkpoint", str(kept)], check=True, capture_output=True)
+    restored = sc.Simulation.restore(kept.read_bytes())
+    alone = sc.Simulation(corridor)
+    alone.step(restored.frame)
+    assert restored.state_sha256 == alone.state_sha256
