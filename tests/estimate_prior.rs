@@ -3,7 +3,7 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sandbox::lab::estimate::{
-    Goal, Known, Means, Offer, Prior, Series, Tolerance, first_round, further,
+    Goal, Known, Means, Offer, Prior, Series, Tolerance, first_round, further, range,
 };
 use sandbox::lab::model::Quantity;
 
@@ -91,6 +91,27 @@ fn a_known_spread_narrows_intervals_and_a_contradicted_one_does_not() {
     let wrong = series.means(&prior(1e-4, &errors)).unwrap();
     assert!((wrong.variance / alone.variance - 1.0).abs() < 0.35);
     assert!(wrong.width(0.95) > 0.8 * alone.width(0.95));
+}
+
+#[test]
+fn a_plan_for_a_scene_that_nobody_has_run_allows_five_times_the_runs() {
+    let rows = prior(0.02, &[0.1, -0.1, 0.0]);
+    let goal = Goal::expected(WANTED, &rows).unwrap();
+    let offers = offers(&[0; 6]);
+    let first = first_round(std::slice::from_ref(&goal), &offers, 0.95).unwrap();
+    let asked = |most| range(std::slice::from_ref(&goal), &offers, &first, (0.95, most));
+    let [low, high] = asked(100_000);
+    assert!(
+        (20..=high / 5).contains(&low) && high % 5 == 0,
+        "{low} {high}"
+    );
+    assert_eq!(asked(50), [low, 50]);
+    // Runs of the scene say what its step does.
+    let mut rng = ChaCha8Rng::seed_from_u64(4);
+    let series = drawn(&[0, 0, 10, 0, 10, 0], 2.0, 0.0, &mut rng);
+    let seen = Goal::new(WANTED, series.means(&rows).unwrap());
+    let [_, known] = range(&[seen], &offers, &first, (0.95, 100_000));
+    assert!(known < high, "{known} {high}");
 }
 
 /// The number of runs at each step.

@@ -72,6 +72,12 @@ pub(super) struct NewGoal {
     goal: Vector,
 }
 
+impl NewGoal {
+    pub(super) fn is_finite(&self) -> bool {
+        self.goal.x.is_finite() && self.goal.y.is_finite()
+    }
+}
+
 impl Simulation {
     /// The index of agent `id` in the current frame.
     ///

@@ -158,8 +158,9 @@ impl State {
                 .iter()
                 .flatten()
                 .all(|trip| !self.progress.places.is_empty() && trips::fits(trip, scene));
+        let numbers = self.new_goals.iter().all(NewGoal::is_finite);
         let listed = self.crowd_changed || self.sorted_at.len() == agents.len();
-        (is_whole && known && listed)
+        (is_whole && known && numbers && listed)
             .then_some(())
             .ok_or(StateError)
     }
