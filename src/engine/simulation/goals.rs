@@ -97,8 +97,8 @@ impl Simulation {
     }
 
     /// Gives agents, by id, new goals in meters. They walk there from the next evaluated frame on, around walls if the
-    /// scene has path maps. An agent on a journey abandons it and stays at its goal. Other agents leave at their goal if
-    /// their group does. Agents that leave before that frame are left alone.
+    /// scene has path maps. An agent on a journey abandons it and stays at its goal. Other agents leave at their goal
+    /// if their group does. Agents that leave before that frame are left alone.
     ///
     /// # Errors
     /// An agent is absent or walks in a direction, or a goal is not on the floor or cannot be reached. Then no agent
