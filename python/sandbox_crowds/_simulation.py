@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import collections
 import json
+import math
 import operator
 import os
 from typing import TYPE_CHECKING, Any
@@ -171,8 +172,8 @@ class Simulation:
     def keep(self, every: float = 1.0, most: int = 60) -> None:
         """Keeps a snapshot now and every `every` seconds, for `rewind`: the latest `most` of them, each a fork. A new
         goal is kept, too."""
-        if not (every > 0 and operator.index(most) > 0):
-            raise Error(f"every={every}, most={most}: give numbers above 0")
+        if not (0 < every < math.inf and operator.index(most) > 0):
+            raise Error(f"every={every}, most={most}: give finite numbers above 0")
         self._every = max(1, round(every / self.time_step))
         self._kept = collections.deque([self._native.fork()], maxlen=most)
 
@@ -183,8 +184,8 @@ class Simulation:
         """
         if self._kept is None:
             raise Error("rewind: call keep() first, from which on one can go back")
-        if not secs >= 0:
-            raise Error(f"secs={secs}: give 0 or more")
+        if not 0 <= secs < math.inf:
+            raise Error(f"secs={secs}: give a finite number from 0 on")
         native = self._native
         frame = native.frame - round(secs / native.time_step)
         first = self._kept[0]

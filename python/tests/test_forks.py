@@ -91,8 +91,11 @@ def test_one_can_go_back_and_do_otherwise(corridor):
     [
         (lambda one: one.rewind(1), "call keep"),
         (lambda one: one.keep(every=0), "above 0"),
+        (lambda one: one.keep(every=float("inf")), "finite"),
+        (lambda one: (one.keep(), one.rewind(float("inf"))), "finite"),
+        (lambda one: (one.keep(), one.rewind(-1)), "from 0 on"),
         (lambda one: (one.keep(), one.rewind(9)), "the first snapshot"),
-        (lambda one: (one.keep(), one.rewind(float("nan"))), "give 0 or more"),
+        (lambda one: (one.keep(), one.rewind(float("nan"))), "finite number from 0 on"),
         (lambda one: sc.Simulation.restore(b"x"), "not a checkpoint"),
         (lambda one: sc.Simulation.restore(one.save()[:-3]), "damaged"),
     ],
