@@ -11,6 +11,7 @@ use sandbox::scenario::Scenario;
 use serde_json::{Value, json};
 
 const FLOW: Flow = Flow {
+    first: 0,
     per_sec: 2.5,
     from: 10.0,
     until: 610.0,

@@ -192,10 +192,16 @@ fn a_simulation_goes_frame_by_frame() {
         contained,
         clamped: _,
         displaced,
+        removed,
     } = simulation.outcome();
     assert_eq!(
-        (arrivals.len(), displaced.len(), contained.count),
-        (7, 0, 0)
+        (
+            arrivals.len(),
+            displaced.len(),
+            removed.len(),
+            contained.count
+        ),
+        (7, 0, 0, 0)
     );
     assert!(*moves > 7 && arrivals[0].time <= arrivals[6].time && arrivals[0].counted);
     assert!(!simulation.expects_agents());

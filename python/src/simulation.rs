@@ -8,7 +8,8 @@ use pyo3::types::{PyByteArray, PyBytes, PyDict};
 use sandbox::cli::json_report;
 use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::frame::Frame;
-use sandbox::engine::simulation::Fault;
+use sandbox::engine::scene::Action;
+use sandbox::engine::simulation::{Added, Fault};
 use sandbox::output::trajectory::{Collected, Columns, frames_between, walkable_area};
 use sandbox::runs::checkpoint::Checkpoint;
 use sandbox::runs::drive::Run;
@@ -192,16 +193,26 @@ impl Native {
     fn set_goals(&mut self, py: Python<'_>, goals: Vec<(u32, [f64; 2])>) -> PyResult<()> {
         check_process()?;
         py.detach(|| {
-            let simulation = &mut self.run.simulation;
-            if simulation.scene().routes.is_none()
-                && let Some(floor) = self.run.scenario.floor().map_err(error)?
-            {
-                simulation.add_routes(floor);
-            }
             let goals = goals.into_iter().map(|(id, goal)| (id, goal.into()));
-            let goals: Vec<_> = goals.collect();
-            simulation.set_goals(&goals).map_err(error)
+            self.intervened(Action::Goals(goals.collect())).map(drop)
         })
+    }
+
+    /// Does what an element of the list `interventions`, as JSON, says. Returns the ids of people who enter, and the
+    /// places in the list of those without room.
+    fn intervene(&mut self, py: Python<'_>, keys: &str) -> PyResult<(Vec<u32>, Vec<usize>)> {
+        check_process()?;
+        py.detach(|| {
+            let keys = serde_json::from_str(keys).map_err(error)?;
+            let action = self.run.scenario.action(&keys).map_err(error)?;
+            let added = self.intervened(action)?;
+            Ok((added.ids, added.without_room))
+        })
+    }
+
+    /// The scenario up to now, with what was done, as JSON.
+    fn played(&self) -> String {
+        self.run.played().to_string()
     }
 
     /// An independent copy in the same frame.
@@ -303,6 +314,10 @@ impl Native {
         };
         new.evaluate().map_err(|fault| new.laid_open(fault))?;
         Ok(new)
+    }
+
+    fn intervened(&mut self, action: Action) -> PyResult<Added> {
+        self.run.intervene(action).map_err(error)
     }
 
     fn now(&self) -> Frame<'_> {

@@ -24,7 +24,7 @@ pub const RADIUS_RANGE: [f64; 2] = [0.215, 0.265];
 pub const REFERENCE_RADIUS: f64 = 0.24;
 
 /// An agent about to enter. Values that are `None` are drawn or derived.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NewAgent {
     /// Position, meters.
     pub position: Vector,
@@ -274,6 +274,20 @@ impl Agents {
             scene[0],
         );
         set_last(&mut self.max_speed, self.id.len(), max, scene[1]);
+    }
+
+    /// Changes s_pref and s_max of agent `i`, m/s; `scene` has those of agents without their own.
+    pub fn change_speeds(&mut self, i: usize, own: [f64; 2], scene: [f64; 2]) {
+        let count = self.id.len();
+        let columns = [&mut self.preferred_speed, &mut self.max_speed];
+        for (column, (value, usual)) in columns.into_iter().zip(own.into_iter().zip(scene)) {
+            if column.is_empty() && value != usual {
+                column.resize(count, usual);
+            }
+            if let Some(slot) = column.get_mut(i) {
+                *slot = value;
+            }
+        }
     }
 
     /// Sets the time in seconds from which the agent that entered last walks; `None`: from its entry.

@@ -3,6 +3,7 @@
 
 use rand::Rng;
 use rand::distr::Open01;
+use serde::{Deserialize, Serialize};
 
 use crate::agents::NewAgent;
 use crate::geometry::{Wall, Walls};
@@ -57,9 +58,9 @@ pub enum Arrivals {
 }
 
 /// A flow of agents.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Flow {
-    /// Agents per second, above 0.
+    /// Agents per second; 0: none arrives.
     pub per_sec: f64,
     /// Its beginning, seconds.
     pub from: f64,
@@ -67,11 +68,13 @@ pub struct Flow {
     pub until: f64,
     /// The most agents; `None`: unlimited.
     pub number: Option<u32>,
+    /// The number of its first agent: of those that have arrived at this entrance before.
+    pub first: u32,
 }
 
 impl Flow {
     fn includes(&self, k: u32, time: f64) -> bool {
-        time < self.until && self.number.is_none_or(|number| k < number)
+        self.per_sec > 0.0 && time < self.until && self.number.is_none_or(|number| k < number)
     }
 }
 
@@ -89,13 +92,14 @@ impl Arrivals {
     pub fn time(&self, k: u32, before: Option<f64>, seed: u64, entrance: u32) -> Option<f64> {
         match self {
             Self::Constant(flow) => {
-                let time = flow.from + f64::from(k) / flow.per_sec;
+                let time = flow.from + f64::from(k - flow.first) / flow.per_sec;
                 flow.includes(k, time).then_some(time)
             }
             Self::Poisson(flow) => {
                 let mut random = random::stream(seed, Purpose::Arrival, entrance, u64::from(k));
                 let share: f64 = random.sample(Open01);
-                let time = before.unwrap_or(flow.from) - share.ln() / flow.per_sec;
+                let before = before.map_or(flow.from, |before| before.max(flow.from));
+                let time = before - share.ln() / flow.per_sec;
                 flow.includes(k, time).then_some(time)
             }
             Self::At(times) => times.get(k as usize).copied(),

@@ -13,6 +13,8 @@ pub use terms::{Term, Terms};
 use std::ops::Range;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::forces::contact::{self, Contact};
 use crate::forces::goal::GoalForce;
 use crate::forces::near::{self, PairCoefficients, Wanted};
@@ -93,7 +95,7 @@ impl Navigation {
 }
 
 /// Changes for the agents that take part in a push (§6.3).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Override {
     /// K^goal instead of the profile's.
     pub goal_scale: Option<f64>,

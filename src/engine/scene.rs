@@ -1,9 +1,12 @@
 //! A scene: the complete input of a simulation.
 
+mod intervention;
 mod needs;
 mod region;
 
 use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
 
 use crate::agents::{Agents, NewAgent};
 pub use crate::boundary::WallMethod;
@@ -25,6 +28,7 @@ use crate::profile::{Blend, Override, Profile};
 use crate::routes::{Rooms, Routes};
 use crate::traits::Traits;
 
+pub use intervention::{Action, Intervention};
 pub use needs::Needs;
 pub use region::Region;
 
@@ -126,7 +130,7 @@ pub struct Source {
 
 /// A temporary change of behavior of all agents that are in a rectangle when the push begins. An agent that takes
 /// part in two pushes follows the later one.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Push {
     /// Name in reports.
     pub name: String,
@@ -185,10 +189,14 @@ pub struct Scene {
     pub scheduled: Vec<ScheduledAgent>,
     /// Temporary changes of behavior.
     pub pushes: Vec<Push>,
+    /// Changes at the beginning of given frames, in the order of these frames.
+    pub interventions: Vec<Intervention>,
     /// Places, journeys and zones.
     pub journeys: Journeys,
     /// Routes around walls; `None`: agents walk straight toward their goals, as in the paper.
     pub routes: Option<Arc<Routes>>,
+    /// Routes for a scene without, from the first intervention on that needs them.
+    pub later_routes: Option<Arc<Routes>>,
     /// How agents choose between routes.
     pub routing: Routing,
     /// Forces from outside this crate.
@@ -218,8 +226,10 @@ impl Default for Scene {
             entrances: Vec::new(),
             scheduled: Vec::new(),
             pushes: Vec::new(),
+            interventions: Vec::new(),
             journeys: Journeys::default(),
             routes: None,
+            later_routes: None,
             routing: Routing::default(),
             own_forces: Vec::new(),
         }

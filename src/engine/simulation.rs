@@ -4,6 +4,7 @@ mod behavior;
 mod bound;
 mod choice;
 mod closed;
+mod control;
 mod digest;
 mod doors;
 mod entrances;
@@ -11,6 +12,7 @@ mod evaluate;
 mod expected;
 mod goals;
 mod integrate;
+mod interventions;
 mod limited;
 mod loads;
 mod passing;
@@ -29,9 +31,9 @@ mod trips;
 
 pub use choice::{Decision, Prospect, Reason};
 pub use closed::Closed;
+pub use control::{Absent, ActionError, Added};
 pub use entrances::Backlog;
 pub use expected::Expected;
-pub use goals::{Absent, GoalError};
 pub use limited::{Limited, SPOT_RADIUS};
 pub use passing::{BEFORE_WALLS, WALKS_ON};
 pub use plans::RouteDecision;
@@ -97,8 +99,7 @@ struct Crowd {
     schedule: schedule::Schedule,
     progress: Progress,
     outcome: Outcome,
-    /// Goals from outside that agents get in a later frame.
-    new_goals: Vec<goals::NewGoal>,
+    interventions: interventions::Interventions,
     /// Whether agents have entered or left since they were last sorted.
     changed: bool,
     /// Whether entries, choices and all other changes of the state in a coarse frame have been made in this frame. They
@@ -142,6 +143,19 @@ pub struct Outcome {
     pub clamped: Limited,
     /// Agents that entered inside an obstacle and were moved out of it: id and obstacle.
     pub displaced: Vec<(u32, usize)>,
+    /// Agents that an [`Action`](crate::scene::Action) took out, in order.
+    pub removed: Vec<Removal>,
+}
+
+/// An agent that was taken out of the simulation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Removal {
+    /// The agent's id.
+    pub id: u32,
+    /// The time of the frame, seconds.
+    pub time: f64,
+    /// Its position, meters.
+    pub position: Vector,
 }
 
 /// An agent that reached its goal.
@@ -233,7 +247,7 @@ impl Simulation {
             schedule: schedule::Schedule::default(),
             progress: Progress::default(),
             outcome: Outcome::default(),
-            new_goals: Vec::new(),
+            interventions: interventions::Interventions::default(),
             changed: true,
             decided: false,
         };
@@ -288,7 +302,7 @@ impl Simulation {
     }
 
     fn compute(&mut self) -> Result<(), Fault> {
-        self.take_goals();
+        self.make_interventions()?;
         self.follow_schedule()?; // entries and pushes, coarse
         self.count_streams(); // once per second
         self.follow_journeys(); // coarse

@@ -103,6 +103,7 @@ fn in_words(event: &Event) -> (String, &'static str) {
         EventKind::Opened => (format!("{name} opens"), INFO),
         EventKind::Closed => (format!("{name} closes"), WARN),
         EventKind::Released => (format!("{name}: agents wait no longer"), INFO),
+        EventKind::Intervention => (name.clone(), INFO),
         EventKind::PushEnded => (format!("{name}: the push is over"), WARN),
     }
 }

@@ -23,7 +23,7 @@ use scenario::{Draft, Scenario, ScenarioError, Setting};
 /// The first bytes of every file.
 const MAGIC: &[u8] = b"sandbox checkpoint\n";
 /// Format version: increase it with every change to the contents of a file.
-const VERSION: u32 = 17;
+const VERSION: u32 = 18;
 /// Longest file that is read, bytes. Ten million agents, the most allowed, take 1 GB (99 bytes each, in the plaza),
 /// and the text of their scenario takes at most 256 MiB.
 const LONGEST: u64 = 1 << 32;
@@ -115,9 +115,9 @@ impl Checkpoint {
     pub fn resume(self, scenario: Scenario) -> Result<Run, ResumeError> {
         let mut scene = scenario.scene.clone();
         if self.state.has_routes() && scene.routes.is_none() {
-            // They were added for goals from outside.
+            // They are for goals and agents from outside.
             let floor = scenario.floor().map_err(|_| StateError)?;
-            scene.routes = floor.map(Arc::new);
+            scene.later_routes = floor.map(Arc::new);
         }
         let mut simulation = Simulation::resumed(scene, self.state)?;
         let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);

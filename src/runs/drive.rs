@@ -5,10 +5,12 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
-use engine::simulation::{Fault, Simulation};
-use scenario::Scenario;
+use engine::scene::Action;
+use engine::simulation::{ActionError, Added, Fault, Simulation};
 use scenario::measurements::Metrics;
+use scenario::{Scenario, ScenarioError};
 
 /// A run of a scenario, with its measurements.
 pub struct Run {
@@ -34,6 +36,17 @@ pub enum End {
     Duration,
     /// It was interrupted.
     Interrupted,
+}
+
+/// Why nothing is done to a run.
+#[derive(Debug, thiserror::Error)]
+pub enum InterventionError {
+    /// The action is not possible.
+    #[error(transparent)]
+    Action(#[from] ActionError),
+    /// The scenario's floor has no routes.
+    #[error(transparent)]
+    Floor(#[from] ScenarioError),
 }
 
 /// Observes every evaluated frame of a run: a progress bar, a recording, trajectories, checkpoints.
@@ -87,6 +100,33 @@ impl Run {
             metrics,
             end: self.end,
         })
+    }
+
+    /// Does something at the beginning of the next frame that is computed.
+    ///
+    /// # Errors
+    /// The action is not possible, or the scenario's floor has no routes. Nothing is done then.
+    pub fn intervene(&mut self, action: Action) -> Result<Added, InterventionError> {
+        let simulation = &mut self.simulation;
+        let needs_routes = matches!(action, Action::Add(_) | Action::Goals(_));
+        if needs_routes
+            && simulation.lacks_later_routes()
+            && let Some(floor) = self.scenario.floor()?
+        {
+            simulation.set_later_routes(floor);
+        }
+        match action {
+            Action::Add(new) => Ok(simulation.add(&new)?),
+            other => {
+                simulation.intervene(other)?;
+                Ok(Added::default())
+            }
+        }
+    }
+
+    /// The scenario up to the current frame with what was done: a run of it ends in the same state.
+    pub fn played(&self) -> Value {
+        self.scenario.played(&self.simulation)
     }
 
     /// Runs to the end of the scenario, or until `interrupted` returns true. Returns why the run ended.

@@ -49,7 +49,7 @@ pub fn read(bytes: &[u8]) -> bool {
 /// A checkpoint with this payload and a valid header.
 pub fn sealed(payload: &[u8]) -> Vec<u8> {
     let mut bytes = b"sandbox checkpoint\n".to_vec();
-    bytes.extend(17_u32.to_le_bytes());
+    bytes.extend(18_u32.to_le_bytes());
     bytes.extend(Sha256::digest(payload));
     bytes.extend(payload);
     bytes

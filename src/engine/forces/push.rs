@@ -1,12 +1,14 @@
 //! The force from outside on the agents of a push, as it was measured.
 
+use serde::{Deserialize, Serialize};
+
 use super::own::Force;
 use super::rates::{Extremes, Rates};
 use crate::frame::Frame;
 use crate::math::Vector;
 
 /// A force on the agents that take part in a push, whatever their profile.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PushForce {
     /// The index of the push in the scene.
     pub push: u16,

@@ -8,6 +8,8 @@ pub use trip::{Status, Trip};
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use crate::geometry::Ring;
 use crate::math::Vector;
 
@@ -90,7 +92,7 @@ pub struct Change {
 }
 
 /// The kind of a change of a place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ChangeKind {
     /// An exit opens.
     Open,

@@ -1,9 +1,11 @@
 //! Rectangles.
 
+use serde::{Deserialize, Serialize};
+
 use crate::math::Vector;
 
 /// An axis-aligned rectangle, borders included.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Region {
     /// Lower left corner, meters.
     pub min: Vector,

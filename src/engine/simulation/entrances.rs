@@ -6,14 +6,18 @@ use serde::{Deserialize, Serialize};
 
 use super::{Crowd, Fault};
 use crate::agents::NewAgent;
-use crate::entrance::{Entrance, ScheduledAgent, place};
+use crate::entrance::{Arrivals, Entrance, Flow, ScheduledAgent, place};
 use crate::math::{Vector, clamp_length};
 use crate::random::{self, Purpose};
 use crate::scene::Scene;
 
 /// Progress at one entrance.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Gate {
+    /// Whether agents can enter; otherwise they wait.
+    pub(super) open: bool,
+    /// The flow from outside in place of the scene's, once there is one.
+    pub(super) flow: Option<Flow>,
     /// Number of agents that have arrived.
     arrived: u32,
     /// The time of the last arrival, seconds.
@@ -37,7 +41,25 @@ pub struct Backlog<'a> {
     pub largest_frame: u64,
 }
 
+impl Default for Gate {
+    fn default() -> Self {
+        Self {
+            open: true,
+            flow: None,
+            arrived: 0,
+            last: None,
+            entered: 0,
+            largest: (0, 0),
+        }
+    }
+}
+
 impl Gate {
+    /// The number of agents that have arrived.
+    pub(super) fn arrived(&self) -> u32 {
+        self.arrived
+    }
+
     /// Whether a run can reach this progress.
     pub(super) fn is_sound(&self) -> bool {
         self.entered <= self.arrived && self.last.is_none_or(|last| last >= 0.0)
@@ -51,6 +73,11 @@ impl Gate {
     /// The time of the next arrival, seconds; `None` if all have arrived.
     fn next(&self, scene: &Scene, k: usize) -> Option<f64> {
         let arrivals = &scene.entrances[k].arrivals;
+        let changed = self.flow.map(|flow| match arrivals {
+            Arrivals::Constant(_) => Arrivals::Constant(flow),
+            Arrivals::Poisson(_) | Arrivals::At(_) => Arrivals::Poisson(flow),
+        });
+        let arrivals = changed.as_ref().unwrap_or(arrivals);
         arrivals.time(self.arrived, self.last, scene.seed, k as u32)
     }
 
@@ -191,7 +218,7 @@ impl Crowd {
     }
 
     /// The bodies of all agents: center and radius, meters.
-    fn bodies(&self) -> impl Iterator<Item = (Vector, f64)> {
+    pub(super) fn bodies(&self) -> impl Iterator<Item = (Vector, f64)> {
         let bodies = self.agents.position.iter().zip(&self.agents.radius);
         bodies.map(|(&position, &radius)| (position, radius))
     }
@@ -208,6 +235,7 @@ impl Crowd {
         }
         let entrance = &scene.entrances[k];
         while gate.waiting() > 0
+            && gate.open
             && let Some(agent) = self.next_through(scene, entrance)
         {
             self.enter(scene, agent)?;

@@ -195,12 +195,18 @@ impl Crowd {
     fn remove_arrivals(&mut self, scene: &Scene) {
         let agents = &mut self.agents;
         let group = |i: usize| &scene.groups[usize::from(agents.group[i])];
+        let walks_on = |i: usize| {
+            let trip = agents.trip.get(i).and_then(Option::as_ref);
+            trip.is_some_and(|trip| trip.is_outside() || trip.place_ahead().is_some())
+        };
         let has_arrived = |i: usize| {
             let squared = (agents.goal[i] - agents.position[i]).norm_squared();
             // Most agents are far from their goal: skip them without a square root.
             let radius = group(i).removal_radius;
             radius.is_some_and(|radius| {
-                squared <= radius * radius * (1.0 + ROUNDING) && squared.sqrt() <= radius
+                squared <= radius * radius * (1.0 + ROUNDING)
+                    && squared.sqrt() <= radius
+                    && !walks_on(i)
             })
         };
         let all = (0..agents.len()).into_par_iter();

@@ -334,7 +334,7 @@ impl Crowd {
         self.clock.is_coarse() && (0..agents.len()).any(meets)
     }
 
-    fn remove(&mut self, gone: &[usize]) {
+    pub(super) fn remove(&mut self, gone: &[usize]) {
         if gone.is_empty() {
             return;
         }

@@ -38,6 +38,8 @@ pub enum EventKind {
     Closed,
     /// From now on, no agent waits in a waiting area.
     Released,
+    /// What an [`Action`](crate::scene::Action) did, in words, which are the event's name.
+    Intervention,
 }
 
 /// Progress of the sources, entrances, scheduled agents and pushes of a scene.
@@ -213,7 +215,15 @@ impl Crowd {
         if self.schedule.begun[p] || self.clock.coarse_frame_at(push.at) > frame {
             return;
         }
-        self.schedule.begun[p] = true;
+        self.start_push(p, push);
+    }
+
+    /// A push begins in this frame.
+    pub(super) fn start_push(&mut self, p: usize, push: &Push) {
+        let frame = self.clock.frame();
+        let begun = &mut self.schedule.begun;
+        begun.resize(begun.len().max(p + 1), false);
+        begun[p] = true;
         let end = self.clock.coarse_frame_at(push.at + push.lasting);
         self.schedule.pushing.push((p as u16, end));
         let mut count = 0;

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::goals::NewGoal;
 use super::integrate::shift;
+use super::interventions::Interventions;
 use super::schedule::Schedule;
 use super::trips;
 use super::{Outcome, Progress, Simulation};
@@ -30,8 +30,7 @@ pub struct State {
     schedule: Schedule,
     progress: Progress,
     outcome: Outcome,
-    /// Goals from outside that agents get in a later frame.
-    new_goals: Vec<NewGoal>,
+    interventions: Interventions,
     /// Goals from outside that have path maps, in the order of these maps; `None` if agents do not find their routes.
     mapped_goals: Option<Vec<Vector>>,
     /// Whether the density was computed in this frame.
@@ -57,7 +56,7 @@ impl Simulation {
             schedule: crowd.schedule.clone(),
             progress: crowd.progress.clone(),
             outcome: crowd.outcome.clone(),
-            new_goals: crowd.new_goals.clone(),
+            interventions: crowd.interventions.clone(),
             mapped_goals: self
                 .fixed
                 .scene
@@ -77,12 +76,21 @@ impl Simulation {
             agents: Vec::new(),
             ..scene
         };
+        if !state.interventions.fit(&empty) {
+            return Err(StateError);
+        }
+        let clock = empty.clock;
+        state.interventions.edit_again(&mut empty, &clock);
+        let mut simulation = Self::new(empty).map_err(|_| StateError)?;
+        if state.mapped_goals.is_some() {
+            simulation.take_later_routes();
+        }
+        let scene = &mut Arc::make_mut(&mut simulation.fixed).scene;
         for &goal in state.mapped_goals.iter().flatten() {
-            let routes = empty.routes.as_mut().map(Arc::make_mut);
+            let routes = scene.routes.as_mut().map(Arc::make_mut);
             let added = routes.map(|routes| routes.add_goal(goal, |_| true));
             added.ok_or(StateError)?.map_err(|_| StateError)?;
         }
-        let mut simulation = Self::new(empty).map_err(|_| StateError)?;
         state.check(&simulation.fixed.scene)?;
         let crowd = &mut simulation.crowd;
         let states = state.agents.states.iter().zip(&crowd.agents.states);
@@ -95,7 +103,7 @@ impl Simulation {
         crowd.schedule = state.schedule;
         crowd.progress = state.progress;
         crowd.outcome = state.outcome;
-        crowd.new_goals = state.new_goals;
+        crowd.interventions = state.interventions;
         crowd.changed = state.crowd_changed;
         crowd.decided = state.decided;
         if !state.crowd_changed {
@@ -158,9 +166,8 @@ impl State {
                 .iter()
                 .flatten()
                 .all(|trip| !self.progress.places.is_empty() && trips::fits(trip, scene));
-        let numbers = self.new_goals.iter().all(NewGoal::is_finite);
         let listed = self.crowd_changed || self.sorted_at.len() == agents.len();
-        (is_whole && known && numbers && listed)
+        (is_whole && known && listed)
             .then_some(())
             .ok_or(StateError)
     }

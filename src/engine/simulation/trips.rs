@@ -5,8 +5,8 @@ use rand::distr::Open01;
 use rayon::prelude::*;
 
 use super::choice::{Chooser, Seen};
-use super::{Crowd, EventKind, Simulation, Stage};
-use crate::journeys::{ChangeKind, Kind, Status, Trip, WaitingArea};
+use super::{Crowd, Simulation, Stage};
+use crate::journeys::{Kind, Status, Trip, WaitingArea};
 use crate::neighbors::{BLOCK, TASK};
 use crate::random::{self, Purpose};
 use crate::scene::Scene;
@@ -46,7 +46,9 @@ impl Crowd {
             crowd.agents.trip[i].is_none() && crowd.journey(scene, i).is_some()
         };
         for i in self.where_due(has_to_begin) {
-            self.begin(scene, i);
+            if let Some(journey) = self.journey(scene, i) {
+                self.begin(scene, i, journey);
+            }
         }
         self.serve_queues(scene);
         let due = self.where_due(|crowd, i| crowd.needs_attention(scene, i));
@@ -72,32 +74,17 @@ impl Crowd {
                 return;
             }
             self.progress.changes += 1;
-            let state = &mut self.progress.places[usize::from(change.place)];
-            state.open = change.kind == ChangeKind::Open;
-            for trip in self.agents.trip.iter_mut().flatten() {
-                if trip.place == change.place && trip.status == Status::Walking {
-                    trip.chooses_at = trip.chooses_at.min(frame);
-                }
-            }
-            let name = &scene.journeys.places[usize::from(change.place)].name;
-            let kind = match change.kind {
-                ChangeKind::Open => EventKind::Opened,
-                ChangeKind::Close => EventKind::Closed,
-                ChangeKind::Release => EventKind::Released,
-            };
-            self.schedule.note(frame, name, kind);
+            self.change_place(scene, change.place, change.kind);
         }
     }
 
-    /// The journey of agent `i`, if it has one.
+    /// The journey of the group of agent `i`, if it has one.
     pub(super) fn journey(&self, scene: &Scene, i: usize) -> Option<u16> {
         scene.groups[usize::from(self.agents.group[i])].journey
     }
 
-    pub(super) fn begin(&mut self, scene: &Scene, i: usize) {
-        let Some(journey) = self.journey(scene, i) else {
-            return;
-        };
+    /// Agent `i` begins a journey.
+    pub(super) fn begin(&mut self, scene: &Scene, i: usize, journey: u16) {
         self.progress.begun[usize::from(journey)] += 1;
         self.agents.trip[i] = Some(Trip {
             journey,

@@ -17,6 +17,7 @@ use crate::keys::catalog::Parameters;
 use crate::keys::curve::Curve;
 use crate::keys::from::FromData;
 use crate::keys::goals::{Aim, WayFinding};
+use crate::keys::interventions::Intervention;
 use crate::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE, LONGEST_TIME, STRONGEST};
 use crate::keys::names::{optional_word, word};
 use crate::keys::numerics::{IntegratorChoice, TimeStep};
@@ -167,6 +168,9 @@ pub struct File {
     /// Changes at given times: exits and doors open and close, waiting areas are released, and pushes, in which agents
     /// that are in a region at one moment behave differently for a while.
     pub events: Vec<Event>,
+    /// Changes at given frames: people enter, are removed, or get other goals, journeys and speeds; pushes, doors,
+    /// limits, rates and zones. A simulation that is controlled from outside records what was done to it here.
+    pub interventions: Vec<Intervention>,
     /// Values to report.
     pub measurements: Vec<Measurement>,
     /// Conditions for stopping early.

@@ -1,7 +1,7 @@
 //! A value over time: in the scenario, or in a text file.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_untagged::UntaggedEnumVisitor;
 
 use crate::error::Problem;
@@ -17,7 +17,7 @@ pub enum Curve {
 }
 
 /// [seconds, value]
-#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Deserialize, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct CurvePoint(#[schemars(inner(range(min = -STRONGEST, max = STRONGEST)))] pub [f64; 2]);
 

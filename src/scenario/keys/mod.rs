@@ -7,6 +7,7 @@ pub mod curve;
 pub mod distribution;
 pub mod from;
 pub mod goals;
+pub mod interventions;
 pub mod limits;
 pub mod names;
 pub mod numerics;

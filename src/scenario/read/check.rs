@@ -23,8 +23,8 @@ use crate::scene::origin::Items;
 use crate::scene::people::Population;
 use crate::scene::surroundings::Surroundings;
 use crate::scene::{
-    doubts, journeys, numerics, off_floor, overcrowded, periodic, profiles, routes, slits,
-    surroundings, view, widest,
+    doubts, interventions, journeys, numerics, off_floor, overcrowded, periodic, profiles, routes,
+    slits, surroundings, view, widest,
 };
 use crate::trajectories::Tracks;
 use crate::{file, measurements};
@@ -127,6 +127,9 @@ impl Draft {
         let items = populated.map_err(|problem| likely_cause(problem, &without_effect))?;
         scene.integrator = keys.integrator.for_scene(&scene);
         scene.clock = numerics::clock_for(keys, &scene)?;
+        scene.interventions = interventions::read(&keys.interventions, &scene)?;
+        let passage_width = widest::passable(&items.origins(keys, &scene));
+        interventions::add_routes(&mut scene, passage_width)?;
         let placed = scene.agents.len() as u64;
         let fewer = self.need.initial.saturating_sub(placed); // crowds with a density
         let entering = self.need.entering - fewer;
@@ -157,7 +160,7 @@ impl Draft {
             document,
             files: self.files,
             notes,
-            passage_width: widest::passable(&items.origins(keys, &scene)),
+            passage_width,
             scene,
         })
     }
@@ -208,7 +211,7 @@ fn shared(group: &Value) -> Result<(), Problem> {
 }
 
 /// The value of a type, or the first problem and its place.
-fn parsed<'a, T: Deserialize<'a>>(value: &'a Value) -> Result<T, Problem> {
+pub fn parsed<'a, T: Deserialize<'a>>(value: &'a Value) -> Result<T, Problem> {
     serde_path_to_error::deserialize(value).map_err(|error| {
         let path = error.path().to_string();
         let path = if path == "." { String::new() } else { path };

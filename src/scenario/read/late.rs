@@ -12,8 +12,9 @@ use engine::random::Purpose;
 use engine::scene::Scene;
 
 /// Lists, and the keys of their elements that say when something begins, or people go on.
-const BEGIN: [(&str, &str); 4] = [
+const BEGIN: [(&str, &str); 5] = [
     ("events", "at_secs"),
+    ("interventions", "at_secs"),
     ("sources", "start_secs"),
     ("entrances", "from_secs"),
     ("waiting_areas", "until_secs"),

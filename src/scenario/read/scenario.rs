@@ -10,15 +10,17 @@ use crate::file::Stop;
 use crate::floor_plan::Label;
 use crate::input;
 use crate::measurements::Measurement;
+use crate::read::check::parsed;
 use crate::read::document;
 use crate::read::draft::Draft;
 use crate::read::plans::PlanFile;
 use crate::read::setting::Setting;
 use crate::read::shipped::SHIPPED;
-use crate::scene::routes;
 use crate::scene::view::View;
+use crate::scene::{interventions, routes};
 use engine::routes::Routes;
-use engine::scene::Scene;
+use engine::scene::{Action, Scene};
+use engine::simulation::Simulation;
 
 /// A checked scenario: what to simulate, for how long, and what to measure and show.
 #[derive(Debug, Clone)]
@@ -83,6 +85,39 @@ impl Scenario {
             file: self.name.clone(),
             problem,
         })
+    }
+
+    /// The action that an element of the list `interventions` describes, without its time.
+    ///
+    /// # Errors
+    /// A key or a name is unknown, or there is not exactly one action.
+    pub fn action(&self, keys: &Value) -> Result<Action, ScenarioError> {
+        let read = parsed(keys).and_then(|keys| interventions::action(&keys, &self.scene));
+        read.map_err(|problem| ScenarioError::Invalid {
+            file: self.name.clone(),
+            problem,
+        })
+    }
+
+    /// The scenario of a run with what was done to it from outside: its document, which ends at the time of the current
+    /// frame. A run of it has the same state in its last frame.
+    pub fn played(&self, simulation: &Simulation) -> Value {
+        let mut document = self.document.clone();
+        let done = interventions::written(simulation.interventions(), simulation.scene());
+        // In one frame, those from outside act before those of the file.
+        let planned = document["interventions"].as_array().cloned();
+        let all: Vec<Value> = done
+            .into_iter()
+            .chain(planned.unwrap_or_default())
+            .collect();
+        if !all.is_empty() {
+            document["interventions"] = all.into();
+        }
+        document["duration_secs"] = simulation.frame().clock.time().into();
+        if let Some(keys) = document.as_object_mut() {
+            keys.remove("stop");
+        }
+        document
     }
 
     /// Reads a scenario from JSON; see `Draft::read`.

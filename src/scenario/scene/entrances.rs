@@ -18,6 +18,7 @@ impl Entrance {
                 from: self.from_secs.unwrap_or(0.0),
                 until: self.until_secs.unwrap_or(f64::INFINITY),
                 number: self.number,
+                first: 0,
             },
             (None, Some(times)) => {
                 for (key, is_given) in [

@@ -11,6 +11,7 @@ pub mod eclipsed;
 pub mod entrances;
 pub mod from;
 pub mod goals;
+pub mod interventions;
 pub mod jamming;
 pub mod journeys;
 mod leaving;

@@ -3,6 +3,7 @@
 use crate::error::{Problem, ScenarioError};
 use crate::file::File;
 use crate::keys::from::FromData;
+use crate::keys::interventions::Intervention;
 use crate::keys::numerics::TimeStep;
 use crate::keys::people::{Crowd, Entrance, Grid};
 use crate::scene::{surroundings, wall_lists};
@@ -170,6 +171,8 @@ impl Need {
                 }
             }
         }
+        let added = file.interventions.iter().map(Intervention::adds);
+        need.entering = added.fold(need.entering, u64::saturating_add);
         Ok(need)
     }
 

@@ -101,6 +101,32 @@ impl Routes {
         Ok(())
     }
 
+    /// The first of some starts from which no way leads to a goal.
+    ///
+    /// # Errors
+    /// The goal is not on the floor.
+    pub fn without_way(
+        &self,
+        mut starts: impl Iterator<Item = Vector>,
+        goal: Vector,
+    ) -> Result<Option<usize>, WayError> {
+        let made;
+        let map = match self.map_to(Destination::Goal(goal)) {
+            Some(map) => &self.maps[usize::from(map)],
+            None => {
+                made = PathMap::new(&self.floor, &[Goal::Point(goal)], LINE_MARGIN)?;
+                &made
+            }
+        };
+        Ok(starts.position(|start| map.way_from(&self.floor, start).is_none()))
+    }
+
+    /// Whether path maps to `more` goals cannot be added.
+    pub fn lacks_room_for(&self, more: usize, is_used: impl Fn(Vector) -> bool) -> bool {
+        let added = self.added_goals().iter();
+        more > 0 && added.filter(|&&goal| is_used(goal)).count() + more > MOST_GOALS
+    }
+
     /// The goals whose path maps were added later, in the order of their maps, meters.
     pub fn added_goals(&self) -> &[Vector] {
         &self.goals[self.first_goals..]

@@ -1,0 +1,415 @@
+//! Interventions of a file → those of a scene, and back, for the scenario of a run that was controlled from outside.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use crate::error::quote::shown;
+use crate::error::{Problem, Under, suggestion};
+use crate::keys::curve::{Curve, CurvePoint};
+use crate::keys::interventions::{
+    Add, Intervention as Keys, PushKeys, SetCapacity, SetGoal, SetJourney, SetRate, SetSpeed,
+    SetZone,
+};
+use crate::keys::shapes::{Corners, Point, region};
+use crate::scene::routes;
+use engine::agents::NewAgent;
+use engine::forces::push::PushForce;
+use engine::journeys::ChangeKind;
+use engine::math::{Vector, direction};
+use engine::profile::Override;
+use engine::scene::{Action, Intervention, Push, Scene};
+
+/// Reads the interventions of a file for a scene that is otherwise complete, in the order of their frames.
+///
+/// # Errors
+/// A name is unknown, a point is off the floor, or an intervention has no time or does not say what is done.
+pub fn read(given: &[Keys], scene: &Scene) -> Result<Vec<Intervention>, Problem> {
+    let mut all = Vec::new();
+    for (k, keys) in given.iter().enumerate() {
+        let read = || {
+            Ok(Intervention {
+                frame: frame(keys, scene)?,
+                action: action(keys, scene)?,
+            })
+        };
+        all.push(read().under(&format!("interventions[{k}]"))?);
+    }
+    all.sort_by_key(|one| one.frame);
+    Ok(all)
+}
+
+/// Gives a scene without routes those that its interventions need; `width`: the least of passages, or `None` if people
+/// walk straight.
+///
+/// # Errors
+/// Walls cross, or a coordinate is too large.
+pub fn add_routes(scene: &mut Scene, width: Option<f64>) -> Result<(), Problem> {
+    let needs = |one: &Intervention| matches!(one.action, Action::Add(_) | Action::Goals(_));
+    let is_needed = scene.routes.is_none() && scene.interventions.iter().any(needs);
+    scene.later_routes = match width.filter(|_| is_needed && !scene.walls.is_empty()) {
+        Some(width) => Some(Arc::new(routes::floor(scene, width)?)),
+        None => None,
+    };
+    Ok(())
+}
+
+fn frame(keys: &Keys, scene: &Scene) -> Result<u64, Problem> {
+    match (keys.frame, keys.at_secs) {
+        (Some(frame), None) => Ok(frame),
+        (None, Some(at)) => Ok(scene.clock.coarse_frame_at(at)),
+        _ => Err(Problem::new("", "give `frame` or `at_secs`, and not both")),
+    }
+}
+
+/// The action that the keys of an intervention name.
+///
+/// # Errors
+/// A name is unknown, or there is not exactly one action.
+pub fn action(keys: &Keys, scene: &Scene) -> Result<Action, Problem> {
+    if keys.actions().len() != 1 {
+        let given = match &keys.actions()[..] {
+            [] => "nothing".to_owned(),
+            some => format!("`{}`", some.join("` and `")),
+        };
+        let reason = format!(
+            "give one of `add`, `remove`, `set_goal`, `set_journey`, `set_speed`, `push`, `open`, `close`, `release`, \
+             `set_capacity`, `set_rate` and `set_zone`, not {given}"
+        );
+        return Err(Problem::new("", reason));
+    }
+    let names = Names(scene);
+    if let Some(add) = &keys.add {
+        return added(add, &names).under("add");
+    }
+    if let Some(ids) = &keys.remove {
+        return Ok(Action::Remove(ids.clone()));
+    }
+    if let Some(set) = &keys.set_goal {
+        return goals(set).under("set_goal");
+    }
+    if let Some(SetJourney { agents, journey }) = &keys.set_journey {
+        return Ok(Action::Journey {
+            agents: agents.clone(),
+            journey: names.journey(journey).under("set_journey.journey")?,
+        });
+    }
+    if let Some(set) = &keys.set_speed {
+        return Ok(Action::Speed {
+            agents: set.agents.clone(),
+            preferred: set.preferred_speed,
+        });
+    }
+    if let Some(push) = &keys.push {
+        return pushed(push).under("push");
+    }
+    if let Some(SetCapacity { exit, most_per_sec }) = &keys.set_capacity {
+        return Ok(Action::Capacity {
+            exit: names.exit(exit).under("set_capacity.exit")?,
+            most_per_sec: *most_per_sec,
+        });
+    }
+    if let Some(SetRate { entrance, per_sec }) = &keys.set_rate {
+        return Ok(Action::Rate {
+            entrance: names.entrance(entrance).under("set_rate.entrance")?,
+            per_sec: *per_sec,
+        });
+    }
+    if let Some(SetZone { zone, speed_factor }) = &keys.set_zone {
+        return Ok(Action::Zone {
+            zone: names.zone(zone).under("set_zone.zone")?,
+            speed_factor: *speed_factor,
+        });
+    }
+    let changes = [
+        ("open", &keys.open, ChangeKind::Open),
+        ("close", &keys.close, ChangeKind::Close),
+        ("release", &keys.release, ChangeKind::Release),
+    ];
+    let given = changes.into_iter().find(|(_, name, _)| name.is_some());
+    match given {
+        Some((key, Some(name), change)) => names.changed(name, change).under(key),
+        _ => Err(Problem::new("", "says nothing")),
+    }
+}
+
+fn added(keys: &Add, names: &Names) -> Result<Action, Problem> {
+    let group = names.group(&keys.group).under("group")?;
+    let of = &names.0.groups[usize::from(group)];
+    let count = keys.positions.len();
+    let has_goal = of.journey.is_none() && of.direction.is_none();
+    for (key, given) in [
+        ("goals", keys.goals.len()),
+        ("velocities", keys.velocities.len()),
+    ] {
+        if given != count && !(given == 0 && !(key == "goals" && has_goal)) {
+            let reason = match given {
+                0 => format!(
+                    "`{}` has no journey; give the goal of each of the {count} people",
+                    shown(&of.name)
+                ),
+                _ => format!("{given} for {count} positions; give one for each"),
+            };
+            return Err(Problem::new(key, reason));
+        }
+    }
+    let new = keys.positions.iter().enumerate().map(|(k, &position)| {
+        let goal = keys.goals.get(k).copied().unwrap_or(position);
+        NewAgent {
+            velocity: keys
+                .velocities
+                .get(k)
+                .map_or_else(Vector::zeros, |&v| v.into()),
+            ..NewAgent::at(position.into(), goal.into(), group)
+        }
+    });
+    Ok(Action::Add(new.collect()))
+}
+
+fn goals(keys: &SetGoal) -> Result<Action, Problem> {
+    let (agents, goals) = (&keys.agents, &keys.goals);
+    if goals.len() != agents.len() && goals.len() != 1 {
+        let reason = format!(
+            "{} goals for {} agents; give one for all, or one for each",
+            goals.len(),
+            agents.len()
+        );
+        return Err(Problem::new("goals", reason));
+    }
+    let each = goals.iter().cycle().map(|&goal| goal.into());
+    Ok(Action::Goals(agents.iter().copied().zip(each).collect()))
+}
+
+fn pushed(keys: &PushKeys) -> Result<Action, Problem> {
+    let force = match (&keys.acceleration[..], keys.direction) {
+        ([], None) => None,
+        ([], Some(_)) => {
+            let reason = "is for `acceleration`, which is not given; add it, or remove this";
+            return Err(Problem::new("direction", reason));
+        }
+        (points, way) => {
+            let way = way.map_or(Vector::x(), Vector::from);
+            if way == Vector::zeros() {
+                return Err(Problem::new("direction", "must not be [0, 0]"));
+            }
+            Some(PushForce {
+                push: 0,
+                at: 0.0,
+                direction: direction(way),
+                curve: Curve::Points(points.to_vec())
+                    .points()
+                    .under("acceleration")?,
+            })
+        }
+    };
+    let push = Push {
+        name: keys.name.clone(),
+        at: 0.0,
+        lasting: keys.for_secs,
+        region: region("region", Corners(keys.region))?,
+        change: Override {
+            goal_scale: keys.goal_scale,
+            ignore_contact: keys.ignore_contact,
+            ignore_sph: keys.ignore_sph,
+        },
+    };
+    Ok(Action::Push(push, force))
+}
+
+/// What the names of a scene stand for.
+struct Names<'a>(&'a Scene);
+
+impl Names<'_> {
+    fn place(&self, kind: &str, name: &str) -> Result<u16, Problem> {
+        number(
+            kind,
+            name,
+            self.0.journeys.places.iter().map(|one| &one.name),
+        )
+    }
+
+    fn exit(&self, name: &str) -> Result<u16, Problem> {
+        let exits = self.0.journeys.places.iter().filter(|one| one.is_exit());
+        number("exit", name, exits.map(|one| &one.name))?;
+        self.place("exit", name)
+    }
+
+    fn journey(&self, name: &str) -> Result<u16, Problem> {
+        number(
+            "journey",
+            name,
+            self.0.journeys.journeys.iter().map(|one| &one.name),
+        )
+    }
+
+    fn entrance(&self, name: &str) -> Result<u16, Problem> {
+        number(
+            "entrance",
+            name,
+            self.0.entrances.iter().map(|one| &one.name),
+        )
+    }
+
+    fn zone(&self, name: &str) -> Result<u16, Problem> {
+        number(
+            "zone",
+            name,
+            self.0.journeys.zones.iter().map(|one| &one.name),
+        )
+    }
+
+    fn group(&self, name: &str) -> Result<u16, Problem> {
+        number("group", name, self.0.groups.iter().map(|one| &one.name))
+    }
+
+    /// The change of the exit, door, entrance or waiting area of this name.
+    fn changed(&self, name: &str, change: ChangeKind) -> Result<Action, Problem> {
+        if change != ChangeKind::Release
+            && let Ok(entrance) = self.entrance(name)
+        {
+            let open = change == ChangeKind::Open;
+            return Ok(Action::Entrance { entrance, open });
+        }
+        let place = self.place("exit, door, entrance or waiting area", name)?;
+        Ok(Action::Place { place, change })
+    }
+}
+
+/// The number of what has this name.
+fn number<'a>(
+    kind: &str,
+    name: &str,
+    known: impl Iterator<Item = &'a String> + Clone,
+) -> Result<u16, Problem> {
+    let found = known.clone().position(|one| one == name);
+    found.map(|number| number as u16).ok_or_else(|| {
+        let known: Vec<&str> = known.map(String::as_str).collect();
+        let others = match suggestion(name, known.iter().copied()) {
+            meant if !meant.is_empty() => meant,
+            _ if known.is_empty() => "; the scenario has none".to_owned(),
+            _ => format!("; there are {}", known.join(", ")),
+        };
+        Problem::new("", format!("no {kind} is named `{}`{others}", shown(name)))
+    })
+}
+
+/// Interventions of a scene as elements of the list `interventions` of a file.
+pub fn written(all: &[Intervention], scene: &Scene) -> Vec<Value> {
+    let one = |one: &Intervention| Keys {
+        frame: Some(one.frame),
+        ..keys(&one.action, scene)
+    };
+    all.iter()
+        .map(|intervention| one(intervention).document())
+        .collect()
+}
+
+fn point(p: Vector) -> Point {
+    Point(p.into())
+}
+
+/// The keys of an action, without its time.
+fn keys(action: &Action, scene: &Scene) -> Keys {
+    let journeys = &scene.journeys;
+    let place = |number: u16| journeys.places[usize::from(number)].name.clone();
+    let entrance = |number: u16| scene.entrances[usize::from(number)].name.clone();
+    let mut keys = Keys::default();
+    match action {
+        Action::Add(new) => {
+            let is_still = new.iter().all(|one| one.velocity == Vector::zeros());
+            let is_aimless = new.iter().all(|one| one.goal == one.position);
+            let group = new.first().map_or(0, |one| usize::from(one.group));
+            keys.add = Some(Add {
+                group: scene
+                    .groups
+                    .get(group)
+                    .map_or(String::new(), |one| one.name.clone()),
+                positions: new.iter().map(|one| point(one.position)).collect(),
+                goals: match is_aimless {
+                    true => Vec::new(),
+                    false => new.iter().map(|one| point(one.goal)).collect(),
+                },
+                velocities: match is_still {
+                    true => Vec::new(),
+                    false => new.iter().map(|one| one.velocity.into()).collect(),
+                },
+            });
+        }
+        Action::Remove(ids) => keys.remove = Some(ids.clone()),
+        Action::Goals(goals) => {
+            let is_shared = goals.iter().all(|one| one.1 == goals[0].1);
+            let kept = if is_shared {
+                goals.len().min(1)
+            } else {
+                goals.len()
+            };
+            keys.set_goal = Some(SetGoal {
+                agents: goals.iter().map(|&(id, _)| id).collect(),
+                goals: goals[..kept].iter().map(|&(_, goal)| point(goal)).collect(),
+            });
+        }
+        Action::Journey { agents, journey } => {
+            keys.set_journey = Some(SetJourney {
+                agents: agents.clone(),
+                journey: journeys.journeys[usize::from(*journey)].name.clone(),
+            });
+        }
+        Action::Speed { agents, preferred } => {
+            keys.set_speed = Some(SetSpeed {
+                agents: agents.clone(),
+                preferred_speed: *preferred,
+            });
+        }
+        Action::Push(push, force) => {
+            let curve = force.iter().flat_map(|force| &force.curve);
+            keys.push = Some(PushKeys {
+                name: push.name.clone(),
+                region: [point(push.region.min), point(push.region.max)],
+                for_secs: push.lasting,
+                goal_scale: push.change.goal_scale,
+                ignore_contact: push.change.ignore_contact,
+                ignore_sph: push.change.ignore_sph,
+                acceleration: curve.map(|&at| CurvePoint(at)).collect(),
+                direction: force.as_ref().map(|force| point(force.direction)),
+            });
+        }
+        Action::Place {
+            place: number,
+            change,
+        } => match change {
+            ChangeKind::Open => keys.open = Some(place(*number)),
+            ChangeKind::Close => keys.close = Some(place(*number)),
+            ChangeKind::Release => keys.release = Some(place(*number)),
+        },
+        Action::Entrance {
+            entrance: number,
+            open: true,
+        } => keys.open = Some(entrance(*number)),
+        Action::Entrance {
+            entrance: number,
+            open: false,
+        } => keys.close = Some(entrance(*number)),
+        Action::Rate {
+            entrance: number,
+            per_sec,
+        } => {
+            keys.set_rate = Some(SetRate {
+                entrance: entrance(*number),
+                per_sec: *per_sec,
+            });
+        }
+        Action::Capacity { exit, most_per_sec } => {
+            keys.set_capacity = Some(SetCapacity {
+                exit: place(*exit),
+                most_per_sec: *most_per_sec,
+            });
+        }
+        Action::Zone { zone, speed_factor } => {
+            keys.set_zone = Some(SetZone {
+                zone: journeys.zones[usize::from(*zone)].name.clone(),
+                speed_factor: *speed_factor,
+            });
+        }
+    }
+    keys
+}
