@@ -141,10 +141,10 @@ fn action(run: &Run, chance: &mut ChaCha8Rng) -> Action {
             agents: some,
             journey: 0,
         },
-        5 => Action::Speed {
-            agents: some,
-            preferred: chance.random_range(0.0..3.0),
-        },
+        5 => {
+            let speeds = some.into_iter().map(|id| (id, f64::from(id % 7) * 0.4));
+            Action::Speeds(speeds.collect())
+        }
         6 => {
             let push = Push {
                 name: "shove".to_owned(),

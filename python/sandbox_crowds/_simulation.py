@@ -10,6 +10,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from . import _given, _tables
+from ._control import Control
 from ._native import Error, Native
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ SLICE = 0.05
 """The longest time in the native part before Python sees Ctrl-C, seconds."""
 
 
-class Simulation:
+class Simulation(Control):
     """A crowd, frame by frame. Between calls, everything matches: positions, densities and forces are of the same frame.
 
     The same calls give the same bits, on any number of threads. Reading never changes the results. Arrays are copies,
@@ -111,35 +112,7 @@ class Simulation:
         """Every quantity of every agent, one row per agent: `columns()` has their meanings and units."""
         return _tables.frame(self._native.table())
 
-    def set_goal(self, ids: Any, goal: Any) -> None:
-        """Gives agents a new goal, to which they walk from the next frame on, around walls.
-
-        `ids` is an id or a sequence of ids; `goal` a point [x, y] for all of them, or one point for each (shape
-        (len(ids), 2)), m. An agent on a journey leaves it, and stays at its goal. Other agents leave the simulation at
-        their goal if their group does (`remove_within`).
-
-        Raises `Error` if an agent is not present, or a goal is not on the floor or cannot be reached; no agent has a new
-        goal then.
-        """
-        import numpy
-
-        ids = numpy.atleast_1d(numpy.asarray(ids))
-        if ids.ndim != 1 or (ids.size > 0 and ids.dtype.kind not in "iu"):
-            raise TypeError("ids: give an agent's id, or a sequence of ids")
-        if ids.size == 0:
-            return
-        numbers = [_given.agent_id(one) for one in ids.tolist()]
-        try:
-            points = numpy.asarray(goal, dtype="float64")
-        except ValueError as problem:
-            raise Error(f"goal: give a point [x, y], or one for each agent: {problem}") from None
-        if points.shape == (2,):
-            points = numpy.broadcast_to(points, (len(ids), 2))
-        if points.shape != (len(ids), 2):
-            raise Error(
-                f"goal: a point [x, y], or one for each of {len(ids)} agents, not an array of shape {points.shape}"
-            )
-        self._native.set_goals(list(zip(numbers, points.tolist())))
+    def _keep_now(self) -> None:
         if self._kept is not None:
             if self._kept[-1].frame == self.frame:
                 self._kept.pop()
@@ -170,8 +143,8 @@ class Simulation:
         return restored
 
     def keep(self, every: float = 1.0, most: int = 60) -> None:
-        """Keeps a snapshot now and every `every` seconds, for `rewind`: the latest `most` of them, each a fork. A new
-        goal is kept, too."""
+        """Keeps a snapshot now and every `every` seconds, for `rewind`: the latest `most` of them, each a fork. What
+        is done from outside is kept, too."""
         if not (0 < every < math.inf and operator.index(most) > 0):
             raise Error(f"every={every}, most={most}: give finite numbers above 0")
         self._every = max(1, round(every / self.time_step))

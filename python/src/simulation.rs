@@ -111,6 +111,13 @@ impl Native {
         &self.run.scenario.name
     }
 
+    /// The names of the groups.
+    #[getter]
+    fn groups(&self) -> Vec<&str> {
+        let groups = self.run.simulation.scene().groups.iter();
+        groups.map(|group| &*group.name).collect()
+    }
+
     /// The scenario with all settings, as JSON.
     #[getter]
     fn document(&self) -> String {

@@ -17,7 +17,7 @@ const LONGEST: usize = 160;
 /// Keys of a report that depend on the machine, not on the run.
 const OF_MACHINE: [&str; 4] = ["threads", "ms_per_frame", "real_time_factor", "stages_ms"];
 /// What a report says of the people and of the end: keys and words.
-const OUTCOME: [(&str, &str); 9] = [
+const OUTCOME: [(&str, &str); 10] = [
     ("scenario", "scenario"),
     ("profile", "profile"),
     ("seed", "seed"),
@@ -25,6 +25,7 @@ const OUTCOME: [(&str, &str); 9] = [
     ("agents", "people entered"),
     ("arrived", "people arrived"),
     ("remaining", "people remain"),
+    ("removed", "people removed"),
     ("stuck", "people stuck"),
     ("end", "it ended because"),
 ];

@@ -61,10 +61,13 @@ pub struct Summary {
     /// Number of agents at the end.
     #[serde(default)]
     pub remaining: usize,
+    /// Number of agents that were taken out from outside; not written if there were none.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub removed: usize,
     /// When the first of them left, seconds.
     #[serde(default)]
     pub first_secs: Option<f64>,
-    /// When half of the agents that entered had left, seconds.
+    /// When half of the agents that entered, and were not removed, had left, seconds.
     #[serde(default)]
     pub t50_secs: Option<f64>,
     /// When 95 % of them had left, seconds.
@@ -122,6 +125,11 @@ pub struct Backlog {
     pub at_end: u32,
 }
 
+/// Whether a number need not be written.
+fn is_none(number: &usize) -> bool {
+    *number == 0
+}
+
 impl Summary {
     /// The summary of a finished run.
     pub fn of(run: &Run) -> Self {
@@ -136,7 +144,9 @@ impl Summary {
         let measured = run.metrics.results(simulation).into_iter();
         let stuck_because = run.metrics.stuck(simulation);
         let times: Vec<f64> = outcome.arrivals.iter().map(|one| one.time).collect();
-        let [t50_secs, t95_secs, t100_secs] = times_to_leave(&times, frame.agents.entered());
+        let removed = outcome.removed.len();
+        let staying = frame.agents.entered() - removed as u32;
+        let [t50_secs, t95_secs, t100_secs] = times_to_leave(&times, staying);
         Self {
             scenario: scenario.name.clone(),
             profile: scenario.profile_name.clone(),
@@ -149,6 +159,7 @@ impl Summary {
             agents: frame.agents.entered(),
             arrived: outcome.arrivals.len(),
             remaining: frame.agents.count_present(),
+            removed,
             first_secs: times.first().copied(),
             t50_secs,
             t95_secs,

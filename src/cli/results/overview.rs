@@ -20,12 +20,17 @@ pub fn beginning(run: &Run, summary: &Summary) -> String {
         agents,
         arrived,
         remaining,
+        removed,
         ..
     } = summary;
     let reason = run.reason();
+    let removed = match removed {
+        0 => String::new(),
+        some => format!(" {some} were removed."),
+    };
     format!(
         "{scenario} ({profile}{motivation}), seed {seed}: {time_secs:.2} s in {frames} frames\n\
-         It ended: {reason}. {agents} agents entered, {arrived} left, {remaining} remain."
+         It ended: {reason}. {agents} agents entered, {arrived} left, {remaining} remain.{removed}"
     )
 }
 

@@ -34,13 +34,8 @@ pub enum Action {
         /// The number of the journey.
         journey: u16,
     },
-    /// Agents get a preferred speed, and the s_max that belongs to it.
-    Speed {
-        /// Their ids.
-        agents: Vec<u32>,
-        /// Their s_pref, m/s.
-        preferred: f64,
-    },
+    /// Agents get a preferred speed, m/s, and the s_max that belongs to it.
+    Speeds(Vec<(u32, f64)>),
     /// A push begins, with a force if there is one. The times of both, and the index in the force, are set when it
     /// begins.
     Push(Push, Option<PushForce>),

@@ -280,9 +280,11 @@ impl Simulation {
             Action::Remove(ids) => self.known(ids.iter().copied()).map(drop),
             Action::Goals(goals) => self.check_goals(goals),
             Action::Journey { agents, journey } => self.check_journey(agents, *journey),
-            Action::Speed { agents, preferred } => {
-                within("the speed", *preferred, [0.0, FASTEST])?;
-                self.known(agents.iter().copied()).map(drop)
+            Action::Speeds(speeds) => {
+                for &(_, preferred) in speeds {
+                    within("the speed", preferred, [0.0, FASTEST])?;
+                }
+                self.known(speeds.iter().map(|&(id, _)| id)).map(drop)
             }
             Action::Push(push, force) => {
                 within("the duration", push.lasting, [0.0, f64::MAX])?;

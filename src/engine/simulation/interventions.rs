@@ -168,16 +168,15 @@ impl Simulation {
                     &format!("begin the journey {name}"),
                 )
             }
-            Action::Speed { agents, preferred } => {
+            Action::Speeds(speeds) => {
                 let usual = [scene.preferred_speed, scene.max_speed];
-                let own = scene.own_speeds(*preferred);
-                let found = crowd.find_all(agents);
-                for &i in &found {
+                let found = crowd.find(speeds);
+                for &(i, preferred) in &found {
+                    let own = scene.own_speeds(preferred);
                     crowd.agents.change_speeds(i, own, usual);
                 }
                 crowd.changed |= !found.is_empty();
-                let what = format!("want to walk at {preferred} m/s");
-                in_words(found.len(), agents.len(), &what)
+                in_words(found.len(), speeds.len(), "want to walk at another speed")
             }
             Action::Push(..) => {
                 let p = scene.pushes.len() - 1;

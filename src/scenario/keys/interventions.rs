@@ -95,15 +95,15 @@ pub struct SetJourney {
     pub journey: String,
 }
 
-/// A new preferred speed.
+/// New preferred speeds.
 #[derive(Debug, Clone, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SetSpeed {
     /// The ids of the people.
     pub agents: Vec<u32>,
-    /// s_pref, m/s. The largest speed changes with it.
-    #[schemars(range(min = 0, max = 100))]
-    pub preferred_speed: f64,
+    /// Their s_pref, m/s: one for all, or one for each. The largest speed changes with it.
+    #[schemars(inner(range(min = 0, max = 100)))]
+    pub preferred_speeds: Vec<f64>,
 }
 
 /// A push.

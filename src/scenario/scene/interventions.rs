@@ -86,7 +86,8 @@ pub fn action(keys: &Keys, scene: &Scene) -> Result<Action, Problem> {
         return Ok(Action::Remove(ids.clone()));
     }
     if let Some(set) = &keys.set_goal {
-        return goals(set).under("set_goal");
+        let goals = each(&set.agents, &set.goals);
+        return Ok(Action::Goals(goals.under("set_goal.goals")?));
     }
     if let Some(SetJourney { agents, journey }) = &keys.set_journey {
         return Ok(Action::Journey {
@@ -95,10 +96,8 @@ pub fn action(keys: &Keys, scene: &Scene) -> Result<Action, Problem> {
         });
     }
     if let Some(set) = &keys.set_speed {
-        return Ok(Action::Speed {
-            agents: set.agents.clone(),
-            preferred: set.preferred_speed,
-        });
+        let speeds = each(&set.agents, &set.preferred_speeds);
+        return Ok(Action::Speeds(speeds.under("set_speed.preferred_speeds")?));
     }
     if let Some(push) = &keys.push {
         return pushed(push).under("push");
@@ -166,18 +165,27 @@ fn added(keys: &Add, names: &Names) -> Result<Action, Problem> {
     Ok(Action::Add(new.collect()))
 }
 
-fn goals(keys: &SetGoal) -> Result<Action, Problem> {
-    let (agents, goals) = (&keys.agents, &keys.goals);
-    if goals.len() != agents.len() && goals.len() != 1 {
+/// The values of agents: one for all, or one for each.
+fn each<T: Copy, U: From<T>>(agents: &[u32], values: &[T]) -> Result<Vec<(u32, U)>, Problem> {
+    if values.len() != agents.len() && values.len() != 1 {
         let reason = format!(
-            "{} goals for {} agents; give one for all, or one for each",
-            goals.len(),
+            "{} for {} agents; give one for all, or one for each",
+            values.len(),
             agents.len()
         );
-        return Err(Problem::new("goals", reason));
+        return Err(Problem::new("", reason));
     }
-    let each = goals.iter().cycle().map(|&goal| goal.into());
-    Ok(Action::Goals(agents.iter().copied().zip(each).collect()))
+    let all = values.iter().cycle().map(|&value| value.into());
+    Ok(agents.iter().copied().zip(all).collect())
+}
+
+/// The other way round: the ids, and one value for all if all are the same, else one for each.
+fn together<T: Copy + PartialEq>(each: &[(u32, T)]) -> (Vec<u32>, Vec<T>) {
+    let (agents, mut values): (Vec<u32>, Vec<T>) = each.iter().copied().unzip();
+    if values.iter().all(|value| *value == values[0]) {
+        values.truncate(1);
+    }
+    (agents, values)
 }
 
 fn pushed(keys: &PushKeys) -> Result<Action, Problem> {
@@ -337,16 +345,9 @@ fn keys(action: &Action, scene: &Scene) -> Keys {
         }
         Action::Remove(ids) => keys.remove = Some(ids.clone()),
         Action::Goals(goals) => {
-            let is_shared = goals.iter().all(|one| one.1 == goals[0].1);
-            let kept = if is_shared {
-                goals.len().min(1)
-            } else {
-                goals.len()
-            };
-            keys.set_goal = Some(SetGoal {
-                agents: goals.iter().map(|&(id, _)| id).collect(),
-                goals: goals[..kept].iter().map(|&(_, goal)| point(goal)).collect(),
-            });
+            let (agents, goals) = together(goals);
+            let goals = goals.into_iter().map(point).collect();
+            keys.set_goal = Some(SetGoal { agents, goals });
         }
         Action::Journey { agents, journey } => {
             keys.set_journey = Some(SetJourney {
@@ -354,10 +355,11 @@ fn keys(action: &Action, scene: &Scene) -> Keys {
                 journey: journeys.journeys[usize::from(*journey)].name.clone(),
             });
         }
-        Action::Speed { agents, preferred } => {
+        Action::Speeds(speeds) => {
+            let (agents, preferred_speeds) = together(speeds);
             keys.set_speed = Some(SetSpeed {
-                agents: agents.clone(),
-                preferred_speed: *preferred,
+                agents,
+                preferred_speeds,
             });
         }
         Action::Push(push, force) => {
