@@ -17,15 +17,20 @@ program: see `scenarios()`. Settings are the keys of a scenario file, as keyword
 `viscosity=5`, `**{"sources.0.rows": 50}`.
 """
 
+from ._control import Added
 from ._estimate import Estimate, estimate
+from ._model import Frame, Model
 from ._native import Error, __version__, scenarios
 from ._run import Run, columns, run
 from ._simulation import Simulation
 from ._study import sweep, validate
 
 __all__ = [
+    "Added",
     "Error",
     "Estimate",
+    "Frame",
+    "Model",
     "Run",
     "Simulation",
     "__version__",

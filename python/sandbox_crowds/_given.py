@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from . import _native
+from ._model import Model, warn_of_step
 
 Scenario = Mapping[str, Any] | str | os.PathLike[str]
 """A scenario: a dict as in a scenario file, the path of such a file, or a name of `scenarios()`."""
@@ -57,6 +58,7 @@ def native(
     geometry: str | os.PathLike[str] | None,
     settings: dict[str, Any],
     collect: tuple[float, list[str] | None] | None = None,
+    model: Model | None = None,
 ) -> _native.Native:
     """A run before its second frame."""
     if isinstance(scenario, Mapping):
@@ -73,7 +75,9 @@ def native(
             "geometry": None if geometry is None else path_of(geometry),
         },
         collect,
+        None if model is None else model._given(),
     )
+    warn_of_step(begun, model)
     for note in begun.notes:
         warnings.warn(note, stacklevel=3)
     return begun

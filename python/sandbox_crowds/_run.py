@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 from . import _given, _native, _program, _tables
 from ._native import Error
 from ._picture import Picture
+from ._model import Model
 from ._progress import Bar
-from ._simulation import SLICE
+from ._simulation import SLICE, Simulation
 
 if TYPE_CHECKING:
     import pandas
@@ -37,26 +38,27 @@ def run(
     columns: Iterable[str] | None = None,
     geometry: str | os.PathLike[str] | None = None,
     progress: bool | None = None,
+    model: Model | None = None,
     **settings: Any,
 ) -> Run:
     """Runs a scenario to its end.
 
     `fps` is the number of frames per second of the trajectories, which must divide the simulation's; `columns` those
     that they keep (default: all of `columns()`; 8 bytes per value). `geometry` is the path of a floor plan that replaces
-    the scenario's. `progress` shows a bar by tqdm (default: in notebooks and terminals). `settings` are keys of the
-    scenario; `until` is its duration in seconds.
+    the scenario's. `progress` shows a bar by tqdm (default: in notebooks and terminals). `model` is a model of one's own.
+    `settings` are keys of the scenario; `until` is its duration in seconds.
 
     Raises `Error` with the place and the fix if something is invalid, or the simulation fails.
     """
     if isinstance(columns, str):
         raise TypeError("columns: give a list of names")
     wanted = None if columns is None else list(columns)
-    native = _given.native(scenario, geometry, settings, (fps, wanted))
+    native = _given.native(scenario, geometry, settings, (fps, wanted), model)
     with Bar(native.duration, "s", progress) as bar:
         while native.end is None:
             native.advance(1 << 62, SLICE, True)
             bar.reach(native.time)
-    return Run(native, fps)
+    return Run(native, fps, model)
 
 
 class Run:
@@ -65,7 +67,8 @@ class Run:
     Pictures and files are made by the program from the same scenario: it runs again, with the same results.
     """
 
-    def __init__(self, native: _native.Native, fps: float) -> None:
+    def __init__(self, native: _native.Native, fps: float, model: Model | None = None) -> None:
+        self._model = model
         self._report = native.report()
         self._document = native.document
         self._name = native.name
@@ -190,11 +193,42 @@ class Run:
 
     def _program(self, command: str, options: dict[str, Any]) -> str:
         """Runs a command on the scenario of this run, with all its settings."""
+        if self._model is not None:
+            return self._of_recording(command, options)
         with tempfile.TemporaryDirectory() as folder:
             name = "".join(c if c.isalnum() else "-" for c in self._name)
             path = Path(folder, f"{name[:50] or 'scenario'}.json")
             path.write_text(self._document, encoding="utf-8")
             return _program.call(command, str(path), options=options)
+
+    def _of_recording(self, command: str, options: dict[str, Any]) -> str:
+        """Runs a command on a recording of this run: the program does not know the model."""
+        given = {name: value for name, value in options.items() if name not in ("force", "save")}
+        if command == "inspect":
+            again = self._again()
+            again.step(round(options["at"] / again.time_step))
+            return json.dumps({"agents": [again.inspect(options["agent"])]})
+        path = options.get("save")
+        if command == "run" and path is None:
+            raise Error("the program does not know the model: write `Run.trajectory`, or save .rrd or .html")
+        if path is not None and os.path.exists(path) and not options.get("force"):
+            raise Error(f"{path} exists; give force=True to replace it")
+        if path is not None and path.lower().endswith(".rrd"):
+            self._record(path)
+            return ""
+        with tempfile.TemporaryDirectory() as folder:
+            recording = Path(folder, "run.rrd")
+            self._record(recording)
+            return _program.call("draw", str(recording), options=given | ({"out": path} if path else {}))
+
+    def _record(self, path: str | os.PathLike[str]) -> None:
+        again = self._again()
+        with again.record(path):
+            while again.end is None:
+                again.step()
+
+    def _again(self) -> Simulation:
+        return Simulation(json.loads(self._document), model=self._model)
 
     def __repr__(self) -> str:
         found = self.measurements

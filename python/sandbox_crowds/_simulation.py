@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import collections
+import contextlib
 import json
 import math
 import operator
 import os
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from . import _given, _tables
 from ._control import Control
+from ._model import Model, frame_of, measured
 from ._native import Error, Native
 
 if TYPE_CHECKING:
@@ -36,18 +39,20 @@ class Simulation(Control):
         scenario: _given.Scenario,
         *,
         geometry: str | os.PathLike[str] | None = None,
+        model: Model | None = None,
         **settings: Any,
     ) -> None:
         """A simulation of `scenario` in its first frame.
 
-        `geometry` is the path of a floor plan that replaces the scenario's. `settings` are keys of the scenario; `until`
-        is its duration in seconds.
+        `geometry` is the path of a floor plan that replaces the scenario's. `model` is a model of one's own. `settings`
+        are keys of the scenario; `until` is its duration in seconds.
 
         Raises `Error` with the place and the fix if something is invalid.
         """
-        self._begin(_given.native(scenario, geometry, settings))
+        self._begin(_given.native(scenario, geometry, settings, None, model), model)
 
-    def _begin(self, native: Native) -> None:
+    def _begin(self, native: Native, model: Model | None) -> None:
+        self._model = model
         self._native = native
         self._kept: collections.deque[Native] | None = None
         self._every = 0
@@ -125,7 +130,7 @@ class Simulation(Control):
         some 250 bytes per agent and takes about as long as a frame. Snapshots of `keep` are not copied.
         """
         fork = Simulation.__new__(Simulation)
-        fork._begin(self._native.fork())
+        fork._begin(self._native.fork(), self._model)
         return fork
 
     def save(self) -> bytes:
@@ -133,13 +138,15 @@ class Simulation(Control):
         return self._native.save()
 
     @staticmethod
-    def restore(saved: bytes) -> Simulation:
-        """The simulation that was saved, in the same frame; it goes on to the same bits.
+    def restore(saved: bytes, model: Model | None = None) -> Simulation:
+        """The simulation that was saved, in the same frame; it goes on to the same bits. `model`: that of the simulation,
+        if it had one; saved bytes do not have it.
 
         Raises `Error` if the bytes are damaged, or of another version of the program.
         """
         restored = Simulation.__new__(Simulation)
-        restored._begin(Native.restored(bytes(saved)))
+        given = None if model is None else model._given()
+        restored._begin(Native.restored(bytes(saved), given), model)
         return restored
 
     def keep(self, every: float = 1.0, most: int = 60) -> None:
@@ -185,6 +192,39 @@ class Simulation(Control):
         """Every force on an agent in the current frame, as `sandbox inspect --json` prints them: accelerations in m/s²,
         by profile and term, neighbors, walls, its way and its journey."""
         return json.loads(self._native.inspect(_given.agent_id(agent)))
+
+    def measure_model(self) -> dict[str, float]:
+        """The stiffness, 1/s², and the friction, 1/s, of the model in the current frame: the largest changes of its
+        accelerations with positions and velocities. Contacts that come later may be stiffer: measure where people press.
+        """
+        if self._model is None:
+            raise Error("measure_model: the simulation has no model of one's own")
+        frame = frame_of(*self._native.model_frame(self._model.reach))
+        stiffness, friction = measured(self._model, frame)
+        return {"stiffness": stiffness, "friction": friction}
+
+    @contextlib.contextmanager
+    def record(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        every: int = 5,
+        debug_agents: Iterable[int] | None = None,
+    ) -> Iterator[None]:
+        """Records what happens inside of `with simulation.record("out.rrd"):` for the Rerun viewer, one of `every` frames:
+        people, walls, density, and the forces on `debug_agents` by id (default: a dozen), with those of a model of one's
+        own. An existing file is replaced. A `rewind` ends the recording.
+        """
+        text = _given.path_of(path)
+        if operator.index(every) < 1:
+            raise Error(f"every={every}: give 1 or more")
+        ids = None if debug_agents is None else [_given.agent_id(one) for one in debug_agents]
+        native = self._native
+        native.record(text, every, ids)
+        try:
+            yield
+        finally:
+            native.finish_recording()
 
     @property
     def measurements(self) -> dict[str, Any]:

@@ -4,6 +4,7 @@
 #![warn(clippy::unwrap_used)]
 
 mod given;
+mod model;
 mod simulation;
 mod values;
 

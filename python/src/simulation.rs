@@ -1,22 +1,38 @@
 //! A run, frame by frame. Between calls, its current frame is evaluated: positions, densities and forces match.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
-use pyo3::types::{PyByteArray, PyBytes, PyDict};
-use sandbox::cli::json_report;
+use pyo3::types::{PyByteArray, PyBytes, PyDict, PyTuple};
+use sandbox::cli::{json_report, recording_options};
 use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::frame::Frame;
 use sandbox::engine::scene::Action;
 use sandbox::engine::simulation::{Added, Fault};
+use sandbox::engine::stability;
+use sandbox::output::recording::{DebugAgents, Recorder};
 use sandbox::output::trajectory::{Collected, Columns, frames_between, walkable_area};
 use sandbox::runs::checkpoint::Checkpoint;
 use sandbox::runs::drive::Run;
+use sandbox::scenario::Scenario;
 
 use crate::given::{Given, check_memory};
+use crate::model::{GivenModel, Raised, arrays_of};
 use crate::values::{array, column, vector};
 use crate::{check_process, error};
+
+/// Why a simulation does not go on.
+enum Stop {
+    Fault(Fault),
+    Recording(PyErr),
+}
+
+impl From<Fault> for Stop {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}
 
 /// A run, frame by frame.
 #[pyclass(module = "sandbox_crowds._native")]
@@ -25,6 +41,10 @@ pub struct Native {
     collected: Option<Collected>,
     /// The agents of the current frame by id, once they have been asked for.
     order: Option<Vec<u32>>,
+    /// What the function of a model has raised.
+    raised: Raised,
+    /// The recording, and the number of frames from one recorded to the next.
+    recording: Option<(Recorder, u64)>,
 }
 
 #[pymethods]
@@ -35,9 +55,10 @@ impl Native {
         py: Python<'_>,
         given: Given,
         collect: Option<(f64, Option<Vec<String>>)>,
+        model: Option<GivenModel>,
     ) -> PyResult<Self> {
         check_process()?;
-        py.detach(|| rayon::scope(|_| Self::begun(given, collect)))
+        py.detach(|| rayon::scope(|_| Self::begun(given, collect, model)))
     }
 
     /// Simulates `frames` frames, or as many as end within `seconds`, and returns their number. `to_end`: not beyond
@@ -59,6 +80,9 @@ impl Native {
                 let mut done = 0;
                 while done < frames && !(to_end && self.run.end.is_some()) {
                     self.step()?;
+                    if let Err(problem) = self.log() {
+                        return Err(Stop::Recording(problem));
+                    }
                     done += 1;
                     if start.elapsed() >= most {
                         break;
@@ -67,7 +91,10 @@ impl Native {
                 Ok(done)
             })
         });
-        advanced.map_err(|fault| self.laid_open(fault))
+        advanced.map_err(|stop| match stop {
+            Stop::Fault(fault) => self.laid_open(fault),
+            Stop::Recording(problem) => problem,
+        })
     }
 
     /// The number of the current frame.
@@ -92,6 +119,12 @@ impl Native {
     #[getter]
     fn duration(&self) -> f64 {
         self.run.scenario.duration_secs
+    }
+
+    /// The longest step that is safely stable, seconds; `None` if there is no formula for the integrator.
+    #[getter]
+    fn stable_step(&self) -> Option<f64> {
+        stability::time_step(self.run.simulation.scene())
     }
 
     /// Why the run ends here.
@@ -230,6 +263,8 @@ impl Native {
             run,
             collected: None,
             order: None,
+            raised: self.raised.clone(),
+            recording: None,
         })
     }
 
@@ -248,7 +283,7 @@ impl Native {
 
     /// A simulation that goes on from saved bytes.
     #[staticmethod]
-    fn restored(py: Python<'_>, saved: Vec<u8>) -> PyResult<Self> {
+    fn restored(py: Python<'_>, saved: Vec<u8>, model: Option<GivenModel>) -> PyResult<Self> {
         check_process()?;
         py.detach(|| {
             let checkpoint = Checkpoint::parse(&saved, Path::new("saved")).map_err(error)?;
@@ -257,10 +292,38 @@ impl Native {
                     "saved: it is of another version of the program, which may go on to other bits",
                 ));
             }
-            let scenario = checkpoint.scenario(&[]).map_err(error)?;
+            let mut scenario = checkpoint.scenario(&[]).map_err(error)?;
+            let raised = with_model(&mut scenario, model);
             let run = checkpoint.resume(scenario).map_err(error)?;
-            rayon::scope(|_| Self::of(run, None))
+            rayon::scope(|_| Self::of(run, None, raised))
         })
+    }
+
+    /// Begins a recording for the Rerun viewer: this frame, and from now on one of `every` frames. `debug`: the agents
+    /// whose forces it shows; the scenario's if there are none.
+    fn record(&mut self, path: PathBuf, every: u64, debug: Option<Vec<u32>>) -> PyResult<()> {
+        check_process()?;
+        self.finish_recording()?;
+        let scenario = &self.run.scenario;
+        let ids = debug.unwrap_or_else(|| scenario.debug_agents.clone());
+        let now = self.now().clock.time();
+        let options = recording_options(scenario, DebugAgents::Ids(ids), now);
+        let recorder = Recorder::create(path.as_path(), &self.run.simulation, &options);
+        self.recording = Some((recorder.map_err(error)?, every));
+        self.log()
+    }
+
+    /// Ends the recording, if there is one.
+    fn finish_recording(&mut self) -> PyResult<()> {
+        let Some((recorder, _)) = self.recording.take() else {
+            return Ok(());
+        };
+        recorder.finish().map_err(error)
+    }
+
+    /// What a model gets of the current frame: see `_model.py`.
+    fn model_frame<'py>(&self, py: Python<'py>, reach: f64) -> PyResult<Bound<'py, PyTuple>> {
+        arrays_of(py, &self.now(), reach)?.into_pyobject(py)
     }
 
     /// Every force on an agent, as JSON.
@@ -285,8 +348,13 @@ fn dictionary(py: Python<'_>, columns: Columns) -> PyResult<Bound<'_, PyDict>> {
 }
 
 impl Native {
-    fn begun(given: Given, collect: Option<(f64, Option<Vec<String>>)>) -> PyResult<Self> {
-        let scenario = given.scenario()?;
+    fn begun(
+        given: Given,
+        collect: Option<(f64, Option<Vec<String>>)>,
+        model: Option<GivenModel>,
+    ) -> PyResult<Self> {
+        let mut scenario = given.scenario()?;
+        let raised = with_model(&mut scenario, model);
         let columns = match collect {
             Some((fps, wanted)) => Some((fps, columns(wanted)?)),
             None => None,
@@ -307,17 +375,19 @@ impl Native {
             collected.map_err(|reason| error(format!("fps: {reason}")))
         });
         let collected = collected.transpose()?;
-        Self::of(run, collected)
+        Self::of(run, collected, raised)
     }
 
     /// A run in its current frame, which is evaluated.
-    fn of(mut run: Run, collected: Option<Collected>) -> PyResult<Self> {
+    fn of(mut run: Run, collected: Option<Collected>, raised: Raised) -> PyResult<Self> {
         // Densities depend on those before, so every frame needs them.
         run.simulation.request_density_until(u64::MAX);
         let mut new = Self {
             run,
             collected,
             order: None,
+            raised,
+            recording: None,
         };
         new.evaluate().map_err(|fault| new.laid_open(fault))?;
         Ok(new)
@@ -329,6 +399,22 @@ impl Native {
 
     fn now(&self) -> Frame<'_> {
         self.run.simulation.frame()
+    }
+
+    /// Adds the current frame to the recording, if it is due.
+    fn log(&mut self) -> PyResult<()> {
+        if let Some((recorder, every)) = &mut self.recording
+            && self
+                .run
+                .simulation
+                .frame()
+                .clock
+                .frame()
+                .is_multiple_of(*every)
+        {
+            recorder.log(&self.run.simulation, 0.0).map_err(error)?;
+        }
+        Ok(())
     }
 
     fn step(&mut self) -> Result<(), Fault> {
@@ -362,11 +448,23 @@ impl Native {
 
     /// The error of a fault, with the forces on the agent concerned.
     fn laid_open(&mut self, fault: Fault) -> PyErr {
+        if let Some(raised) = self.raised.take() {
+            return raised;
+        }
         match Breakdown::of_fault(&mut self.run.simulation, &fault) {
             Some(agent) => error(format!("{fault}\n{agent}")),
             None => error(fault),
         }
     }
+}
+
+/// Gives a scenario a model of one's own.
+fn with_model(scenario: &mut Scenario, model: Option<GivenModel>) -> Raised {
+    let Some((model, raised)) = model.map(GivenModel::model) else {
+        return Raised::default();
+    };
+    scenario.scene.set_model(model);
+    raised
 }
 
 /// The names of the columns, all if none are given.

@@ -96,6 +96,9 @@ pub struct Agents {
     /// The heading that the agent follows by the choice of headings, held until the next coarse frame: its number,
     /// counted from the one along the way, positive to its left. Empty if no profile has this law.
     pub heading: Vec<i8>,
+    /// What a [`Model`](crate::forces::model::Model) of one's own gave, m/s² or m/s, held until it is asked again; `None`
+    /// for agents that entered since. Empty without such a model.
+    pub own: Vec<Option<Vector>>,
     /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
     /// only, otherwise empty.
     pub acceleration_before: Vec<Option<Vector>>,
@@ -167,7 +170,7 @@ impl Agents {
     }
 
     /// The arrays with an entry for every agent, the others, and the states that forces keep.
-    fn parts(&mut self) -> ([&mut dyn Column; 10], [&mut dyn Column; 13], &mut [States]) {
+    fn parts(&mut self) -> ([&mut dyn Column; 10], [&mut dyn Column; 14], &mut [States]) {
         (
             [
                 &mut self.id,
@@ -185,6 +188,7 @@ impl Agents {
                 &mut self.avoidance,
                 &mut self.allowed_speed,
                 &mut self.heading,
+                &mut self.own,
                 &mut self.acceleration_before,
                 &mut self.route,
                 &mut self.aim,

@@ -159,8 +159,10 @@ impl Breakdown {
         let blend = simulation.blend(i);
         let h = blend.sph.support_radius;
         let changed = simulation.change(i);
+        let is_replaced = simulation.scene().is_replaced();
         let profiles = blend
             .acting(&frame, i)
+            .filter(|_| !is_replaced)
             .map(|(profile, weight)| ProfileShare {
                 name: profile.name.clone(),
                 weight,

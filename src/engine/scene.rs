@@ -13,6 +13,7 @@ pub use crate::boundary::WallMethod;
 use crate::clock::Clock;
 pub use crate::clock::Integrator;
 use crate::entrance::{Entrance, ScheduledAgent};
+use crate::forces::model::OwnModel;
 use crate::forces::own::Force;
 use crate::forces::social::SocialForce;
 use crate::forces::walking::WalkingLaw;
@@ -201,6 +202,8 @@ pub struct Scene {
     pub routing: Routing,
     /// Forces from outside this crate.
     pub own_forces: Vec<Arc<dyn Force>>,
+    /// A model of the whole crowd from outside this crate.
+    pub model: Option<OwnModel>,
 }
 
 impl Default for Scene {
@@ -232,6 +235,7 @@ impl Default for Scene {
             later_routes: None,
             routing: Routing::default(),
             own_forces: Vec::new(),
+            model: None,
         }
     }
 }
@@ -253,6 +257,21 @@ impl Scene {
     /// Whether agents choose the quickest routes.
     pub fn by_time(&self) -> bool {
         self.routing.choice == RouteChoice::Quickest
+    }
+
+    /// Adds a model of the whole crowd, in place of another one.
+    pub fn set_model(&mut self, own: OwnModel) {
+        let others = self.model.take();
+        let name = others.map(|other| other.model.name().to_owned());
+        self.own_forces
+            .retain(|force| Some(force.name()) != name.as_deref());
+        self.own_forces.extend(own.force());
+        self.model = Some(own);
+    }
+
+    /// Whether the accelerations of a model take the place of those of the profiles.
+    pub fn is_replaced(&self) -> bool {
+        self.model.as_ref().is_some_and(OwnModel::replaces)
     }
 
     /// Adds a group and returns its index.

@@ -215,6 +215,14 @@ pub enum Fault {
         /// The obstacle's index.
         obstacle: usize,
     },
+    /// A model of one's own gave no vectors.
+    #[error("the model {name}: {message}")]
+    Model {
+        /// Its name.
+        name: String,
+        /// Why.
+        message: String,
+    },
     /// Two forces of the same name keep different numbers for agents.
     #[error(
         "two forces are named {force}, and they keep different numbers for agents; give one another name"
@@ -312,6 +320,7 @@ impl Simulation {
         self.update_density_and_pressure(self.crowd.clock.time_step()); // 1B
         self.follow_routes(self.crowd.decides()); // coarse
         self.update_preferred_velocity(); // 2
+        self.follow_model()?; // 2, a model of one's own
         self.update_walking_laws(); // 3, coarse
         self.update_rvo(); // 3, coarse
         self.update_acceleration(); // 3, 3B, 4

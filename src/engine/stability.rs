@@ -124,6 +124,7 @@ impl Rates {
             let steps = group.blend.steps().iter();
             steps.map(move |step| step.profile.rates(&extremes))
         });
+        let profiles = profiles.filter(|_| !scene.is_replaced());
         let mut rates = profiles.fold(Self::default(), Self::max);
         // A push can override K^goal of any agent.
         let pushes = scene.pushes.iter();

@@ -280,7 +280,7 @@ pub fn save_moment(
 }
 
 /// The options of a recording that begins at the time `from`.
-fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> RecordingOptions {
+pub fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> RecordingOptions {
     let (view, recorded) = (scenario.view, from..scenario.duration_secs);
     let measured = scenario.measurements.iter().flat_map(Measurement::observed);
     RecordingOptions {

@@ -9,6 +9,7 @@ pub mod drag;
 pub mod goal;
 pub mod legs;
 #[doc(hidden)]
+pub mod model;
 pub mod near;
 pub mod own;
 #[doc(hidden)]

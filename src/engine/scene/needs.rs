@@ -62,6 +62,51 @@ impl Needs {
 impl Scene {
     /// The quantities that this scene needs; only these are computed.
     pub fn needs(&self) -> Needs {
+        let of_people = self.needs_of_people();
+        let own = self.model.as_ref();
+        let reach = own.map_or(0.0, |own| own.model.reach());
+        let density = own.is_some_and(|own| own.model.needs_density());
+        let of_profiles = match self.is_replaced() {
+            false => self.needs_of_profiles(),
+            true => Needs {
+                reach: self
+                    .own_forces
+                    .iter()
+                    .map(|own| own.reach())
+                    .fold(0.0, f64::max),
+                density: self.own_forces.iter().any(|own| own.needs_density()),
+                ..of_people
+            },
+        };
+        let with_model = Needs {
+            reach,
+            density,
+            ..of_people
+        };
+        of_profiles.with(&with_model)
+    }
+
+    /// What the scene needs whatever the profiles: how people walk and leave.
+    fn needs_of_people(&self) -> Needs {
+        Needs {
+            density: false,
+            pairs: Wanted::default(),
+            rvo: false,
+            social: false,
+            walking: false,
+            headings: false,
+            reach: 0.0,
+            avoidance: None,
+            removal: self
+                .groups
+                .iter()
+                .any(|group| group.removal_radius.is_some()),
+            paces: !self.journeys.zones.is_empty(),
+            directions: self.groups.iter().any(|group| group.direction.is_some()),
+        }
+    }
+
+    fn needs_of_profiles(&self) -> Needs {
         let wanted = self.profiles().map(Profile::wanted);
         let pairs = wanted.fold(Wanted::default(), Wanted::with);
         let mut groups = self.groups.iter();
@@ -80,12 +125,7 @@ impl Scene {
             avoidance: (self.profiles())
                 .filter_map(|profile| profile.navigation.avoidance_radius())
                 .reduce(f64::max),
-            removal: self
-                .groups
-                .iter()
-                .any(|group| group.removal_radius.is_some()),
-            paces: !self.journeys.zones.is_empty(),
-            directions: self.groups.iter().any(|group| group.direction.is_some()),
+            ..self.needs_of_people()
         }
     }
 

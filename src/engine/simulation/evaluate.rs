@@ -4,9 +4,10 @@
 
 use rayon::prelude::*;
 
-use super::{Fixed, Simulation, Stage};
+use super::{Fault, Fixed, Simulation, Stage};
 use crate::density;
 use crate::forces::goal;
+use crate::forces::model::Gives;
 use crate::forces::near::{self, PairCoefficients};
 use crate::forces::rvo::{Preference, Scratch};
 use crate::forces::walking::{Decided, Deciders, WalkingLaw, some_meet};
@@ -162,6 +163,48 @@ impl Simulation {
         });
     }
 
+    /// Step 2, a model of one's own: asks it for all agents, or only for those that entered since if it is not its time.
+    /// Velocities that it gives take the place of those toward goals.
+    pub(super) fn follow_model(&mut self) -> Result<(), Fault> {
+        let Some(own) = &self.fixed.scene.model else {
+            return Ok(());
+        };
+        let is_time = !own.coarse || self.crowd.decides();
+        let crowd = &mut self.crowd;
+        crowd.agents.own.resize(crowd.agents.len(), None);
+        if is_time || crowd.agents.own.contains(&None) {
+            let frame = self.derived.frame(&self.fixed, crowd);
+            let model = &own.model;
+            let all = self.stages.time(Stage::OwnModel, || model.vectors(&frame));
+            let fault = |message: String| Fault::Model {
+                name: model.name().to_owned(),
+                message,
+            };
+            let all = all.map_err(fault)?;
+            if all.len() != crowd.agents.len() {
+                let (given, wanted) = (all.len(), crowd.agents.len());
+                return Err(fault(format!("{given} vectors for {wanted} agents")));
+            }
+            if let Some(i) = all.iter().position(|v| !are_finite(&[*v])) {
+                let id = crowd.agents.id[i];
+                let message = format!("({}, {}) for agent {id} is not finite", all[i].x, all[i].y);
+                return Err(fault(message));
+            }
+            for (held, new) in crowd.agents.own.iter_mut().zip(all) {
+                if is_time || held.is_none() {
+                    *held = Some(new);
+                }
+            }
+        }
+        if own.gives == Gives::Velocities {
+            let wanted = &mut self.derived.fields.preferred_velocity;
+            for (wanted, held) in wanted.iter_mut().zip(&crowd.agents.own) {
+                *wanted = held.unwrap_or_default();
+            }
+        }
+        Ok(())
+    }
+
     /// Step 3, walking laws: sets the speeds that agents may walk at, in coarse frames for all agents and in other
     /// frames for those that entered since.
     pub(super) fn update_walking_laws(&mut self) {
@@ -312,6 +355,19 @@ impl Fixed {
     fn accelerate(&self, frame: &Frame, b: usize, acceleration: &mut [Vector]) {
         let from = b * BLOCK;
         let to = from + acceleration.len();
+        if self.scene.is_replaced() {
+            acceleration.fill(Vector::zeros());
+        } else {
+            self.accelerate_by_profiles(frame, b, acceleration);
+        }
+        for force in &self.scene.own_forces {
+            force.add_accelerations(frame, from..to, 1.0, acceleration);
+        }
+    }
+
+    fn accelerate_by_profiles(&self, frame: &Frame, b: usize, acceleration: &mut [Vector]) {
+        let from = b * BLOCK;
+        let to = from + acceleration.len();
         let mut felt = PairCoefficients::default();
         self.each_span(frame.agents, from..to, |span, blend, changed| {
             blend.add_pair_coefficients(frame, span, changed, &mut felt);
@@ -328,9 +384,6 @@ impl Fixed {
             let acceleration = &mut acceleration[span.start - from..span.end - from];
             blend.add_accelerations(frame, span, changed, acceleration);
         });
-        for force in &self.scene.own_forces {
-            force.add_accelerations(frame, from..to, 1.0, acceleration);
-        }
     }
 }
 

@@ -23,6 +23,8 @@ pub enum Stage {
     Routes,
     /// Step 2.
     PreferredVelocity,
+    /// A model of one's own.
+    OwnModel,
     /// Walking laws, coarse.
     WalkingLaws,
     /// Velocity obstacles, coarse.
@@ -37,7 +39,7 @@ pub enum Stage {
 
 impl Stage {
     /// All stages in the order of the loop.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Schedule,
         Self::Journeys,
         Self::Sort,
@@ -46,6 +48,7 @@ impl Stage {
         Self::DensityAndPressure,
         Self::Routes,
         Self::PreferredVelocity,
+        Self::OwnModel,
         Self::WalkingLaws,
         Self::Rvo,
         Self::Acceleration,
@@ -64,6 +67,7 @@ impl Stage {
             Self::DensityAndPressure => "density_and_pressure",
             Self::Routes => "routes",
             Self::PreferredVelocity => "preferred_velocity",
+            Self::OwnModel => "own_model",
             Self::WalkingLaws => "walking_laws",
             Self::Rvo => "rvo",
             Self::Acceleration => "acceleration",
