@@ -22,13 +22,14 @@ from ._estimate import Estimate, estimate
 from ._model import Frame, Model
 from ._native import Error, __version__, scenarios
 from ._run import Run, columns, run
-from ._simulation import Simulation
+from ._simulation import Events, Simulation
 from ._study import sweep, validate
 
 __all__ = [
     "Added",
     "Error",
     "Estimate",
+    "Events",
     "Frame",
     "Model",
     "Run",

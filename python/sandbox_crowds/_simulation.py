@@ -9,7 +9,7 @@ import math
 import operator
 import os
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _given, _tables
 from ._control import Control
@@ -23,6 +23,26 @@ if TYPE_CHECKING:
 
 SLICE = 0.05
 """The longest time in the native part before Python sees Ctrl-C, seconds."""
+
+
+EVENT = [("id", "i8"), ("time", "f8"), ("x", "f8"), ("y", "f8"), ("place", "i4"), ("direction", "i4")]
+"""The fields of `Events`: the id; s; m; the number of the place, or -1; 1 from the left of a line to its right, -1 the
+other way, 0 for what is no crossing."""
+
+
+class Events(NamedTuple):
+    """What happened since the last call: structured arrays with the fields `EVENT`, in the order of time."""
+
+    entered: numpy.ndarray
+    """Those who entered, with their positions in their first frame."""
+    left: numpy.ndarray
+    """Those who left at an exit (its number in `place`) or at their goal (-1), with their last positions."""
+    removed: numpy.ndarray
+    """Those who were taken out."""
+    crossed: numpy.ndarray
+    """Those who crossed the line of an exit, a door or a waypoint, and are still present."""
+    stuck: numpy.ndarray
+    """The ids of those who are stuck and were not: int64."""
 
 
 class Simulation(Control):
@@ -202,6 +222,19 @@ class Simulation(Control):
         frame = frame_of(*self._native.model_frame(self._model.reach))
         stiffness, friction = measured(self._model, frame)
         return {"stiffness": stiffness, "friction": friction}
+
+    def events(self) -> Events:
+        """What happened since the last call: arrays that stay valid. The first call begins to watch, and returns none."""
+        import numpy
+
+        rows, stuck = self._native.take_events()
+        arrays = [numpy.frombuffer(part, dtype=numpy.dtype(EVENT)) for part in rows]
+        return Events(*arrays, numpy.array(stuck, "int64"))
+
+    @property
+    def places(self) -> list[str]:
+        """The names of exits, doors, waypoints, waiting areas and queues: number k is place k of `events`."""
+        return self._native.places
 
     @contextlib.contextmanager
     def record(

@@ -3,6 +3,7 @@
 
 #![warn(clippy::unwrap_used)]
 
+mod events;
 mod given;
 mod model;
 mod simulation;

@@ -17,6 +17,7 @@ use sandbox::runs::checkpoint::Checkpoint;
 use sandbox::runs::drive::Run;
 use sandbox::scenario::Scenario;
 
+use crate::events::Watch;
 use crate::given::{Given, check_memory};
 use crate::model::{GivenModel, Raised, arrays_of};
 use crate::values::{array, column, vector};
@@ -45,6 +46,7 @@ pub struct Native {
     raised: Raised,
     /// The recording, and the number of frames from one recorded to the next.
     recording: Option<(Recorder, u64)>,
+    watch: Option<Watch>,
 }
 
 #[pymethods]
@@ -265,6 +267,7 @@ impl Native {
             order: None,
             raised: self.raised.clone(),
             recording: None,
+            watch: self.watch.clone(),
         })
     }
 
@@ -324,6 +327,27 @@ impl Native {
     /// What a model gets of the current frame: see `_model.py`.
     fn model_frame<'py>(&self, py: Python<'py>, reach: f64) -> PyResult<Bound<'py, PyTuple>> {
         arrays_of(py, &self.now(), reach)?.into_pyobject(py)
+    }
+
+    /// What happened since the last call, which began to watch: rows of those who entered, left, were removed and
+    /// crossed lines, and the ids of those who got stuck.
+    fn take_events<'py>(
+        &mut self,
+        py: Python<'py>,
+    ) -> PyResult<([Bound<'py, PyBytes>; 4], Vec<u32>)> {
+        check_process()?;
+        let run = &self.run;
+        Ok(self
+            .watch
+            .get_or_insert_with(|| Watch::begin(run))
+            .take(py, run))
+    }
+
+    /// The names of the places.
+    #[getter]
+    fn places(&self) -> Vec<&str> {
+        let places = self.run.simulation.scene().journeys.places.iter();
+        places.map(|place| &*place.name).collect()
     }
 
     /// Every force on an agent, as JSON.
@@ -388,6 +412,7 @@ impl Native {
             order: None,
             raised,
             recording: None,
+            watch: None,
         };
         new.evaluate().map_err(|fault| new.laid_open(fault))?;
         Ok(new)
@@ -425,6 +450,9 @@ impl Native {
     fn evaluate(&mut self) -> Result<(), Fault> {
         self.run.simulation.evaluate()?;
         self.run.measure();
+        if let Some(watch) = &mut self.watch {
+            watch.observe(&self.run.simulation);
+        }
         if let Some(collected) = &mut self.collected {
             collected.log(&self.run.simulation);
         }

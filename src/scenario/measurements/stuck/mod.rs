@@ -200,8 +200,10 @@ fn aim(simulation: &Simulation, i: usize) -> Option<Aim> {
     if let Some(direction) = group.direction {
         return Some(Aim::Direction(direction));
     }
-    if group.journey.is_some() {
-        let trip = agents.trip.get(i)?.as_ref()?;
+    let trip = agents.trip.get(i).and_then(Option::as_ref);
+    let is_on_journey = trip.is_some_and(|trip| trip.place_ahead().is_some());
+    if group.journey.is_some() || is_on_journey {
+        let trip = trip?;
         let walks = trip.status == Status::Walking && trip.hold.is_none();
         return walks.then_some(Aim::Place(trip.place));
     }
