@@ -1,10 +1,11 @@
-"""A forecast: counts at doors go into a twin of a hall, whose forks say how dense it will be before a narrow gap.
+"""A forecast: counts at doors drive a twin of a hall, and forks of the twin show how dense it may get before a gap.
 
-    python forecast.py --until 180
+    python forecast.py                 # 180 s; every 10 s a forecast of the next 60 s
+    python forecast.py --train 0.5     # the same without a train
 
-Every 10 s the twin takes in how many people came through each door, as a camera would count them, and 20 forks of it run
-60 s ahead. The "reality" is a second simulation of the hall, with another seed and with a train that the twin knows
-nothing of. SI units.
+Every 10 s the twin takes in the number of people who came through each door, as a camera would count them. Then its
+forks run ahead, with arrivals drawn from what the counts say about the rates. The "reality" is another simulation of
+the same hall with another seed, in which a train arrives. The twin knows only the counts. All units are SI units.
 """
 
 import argparse
@@ -17,98 +18,146 @@ import numpy as np
 import sandbox_crowds as sc
 
 PERIOD = 10  # s, from one count to the next
-FEARED = np.array([[20.5, 6], [23.5, 10]])  # m, the place before the gap: lower left and upper right corner
+PLACE = np.array([[21, 6], [24, 10]])  # m, the area before the gap: lower left and upper right corner
 SPEED = {"mean": 1.34, "std": 0.26, "min": 0.5, "max": 2.2}  # preferred speeds, m/s
-BAND = [0.05, 0.95]
-FROM_TRAIN, STREET, TRAIN_AT = [0.5, 4.0], 0.8, [60, 100]  # P/s without and with a train; P/s; s
-
-
-def rectangle(x0, y0, x1, y1, shift):
-    """The corners of a rectangle, moved by `shift`."""
-    return (np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]) + shift).tolist()
+BAND = [0.05, 0.95]  # quantiles
+CALM, STREET, TRAIN_SECS = 0.5, 0.8, [60, 100]  # P/s from the platform without a train and from the street; s
 
 
 def hall(seed, arrivals, halls=1):
-    """The scenario: two entrances in the west, a gap of 2.4 m, two exits in the east; or several such halls."""
-    floor = {"walkable_area": [], "entrances": [], "exits": [], "journeys": []}
+    """The scenario of one or more halls: two entrances in the west, a gap of 2 m, two exits in the east."""
+    areas, exits, entrances, journeys = [], [], [], []
     for k in range(halls):
         shift = np.array([60 * (k // 10), 26 * (k % 10)])
-        line = lambda *ends: (np.array(ends) + shift).tolist()
-        parts = [(0, 0, 24, 16), (23.9, 6.8, 24.6, 9.2), (24.5, 0, 40, 16)]
-        floor["walkable_area"] += [[rectangle(*part, shift)] for part in parts]
-        floor["exits"] += [
-            {"name": f"north {k}", "line": line([40, 10], [40, 14])},
-            {"name": f"south {k}", "line": line([40, 2], [40, 6])},
-        ]
-        floor["journeys"] += [{"name": f"out {k}", "stages": [{"shares": {f"north {k}": 3, f"south {k}": 2}}]}]
-        traits = {"per_sec": 1, "arrivals": arrivals, "journey": f"out {k}", "preferred_speed": {"normal": SPEED}}
-        floor["entrances"] += [
-            {"name": f"train {k}", "line": line([0, 1], [0, 6]), **traits},
-            {"name": f"street {k}", "line": line([0, 10], [0, 15]), **traits},
-        ]
-    return {"name": "hall", "profile": "steer+sph", "seed": seed, "duration_secs": 3600, **floor}
+        for x0, y0, x1, y1 in [(0, 0, 24, 16), (23.9, 7, 24.6, 9), (24.5, 0, 40, 16)]:
+            areas.append([(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]) + shift).tolist()])
+        for name, *y in [("north", 10, 14), ("south", 2, 6)]:
+            exits.append({"name": f"{name} {k}", "line": [[40 + shift[0], end + shift[1]] for end in y]})
+        journeys.append({"name": f"out {k}", "stages": [{"shares": {f"north {k}": 3, f"south {k}": 2}}]})
+        for name, *y in [("train", 1, 6), ("street", 10, 15)]:
+            line = [[shift[0], end + shift[1]] for end in y]
+            flow = {"arrivals": arrivals, "per_sec": CALM, "from_secs": 1, "preferred_speed": {"normal": SPEED}}
+            entrances.append({"name": f"{name} {k}", "line": line, "journey": f"out {k}"} | flow)
+    floor = {"walkable_area": areas, "exits": exits, "entrances": entrances, "journeys": journeys}
+    model = {"profile": "steer+sph", "preset": "fast", "route_choice": "shortest"}
+    return {"name": "hall", "seed": seed, "duration_secs": 3600} | model | floor
 
 
 def advance(simulation, secs):
-    """Steps to the frame that is `secs` seconds later."""
+    """Steps to the frame that is `secs` later."""
     simulation.step(round(secs / simulation.time_step))
 
 
-def density(simulation, place=FEARED):
-    """People per square meter in a rectangle."""
+def density(simulation, place=PLACE):
+    """The number of people in a rectangle over its area, P/m²."""
     low, high = place
-    inside = ((simulation.positions >= low) & (simulation.positions <= high)).all(axis=1)
-    return inside.sum() / np.prod(high - low)
+    inside = (simulation.positions >= low) & (simulation.positions <= high)
+    return inside.all(axis=1).sum() / np.prod(high - low)
 
 
-def counted(entered, entrances):
-    """How many people entered by each entrance: by the one whose middle is nearest to their first position."""
-    middles = np.array([np.mean(one["line"], axis=0) for one in entrances])
-    places = np.column_stack([entered["x"], entered["y"]])
-    nearest = np.linalg.norm(places[:, None] - middles, axis=2).argmin(axis=1)
-    return dict(zip([one["name"] for one in entrances], np.bincount(nearest, minlength=len(middles)).tolist()))
+def counts_of(entered, entrances):
+    """How many people entered at each entrance: each at the one whose middle is nearest to the first position."""
+    middles = np.array([np.mean(entrance["line"], axis=0) for entrance in entrances])
+    first = np.column_stack([entered["x"], entered["y"]])
+    nearest = np.linalg.norm(first[:, None] - middles, axis=2).argmin(axis=1)
+    return {entrance["name"]: int((nearest == k).sum()) for k, entrance in enumerate(entrances)}
 
 
-def drawn_future(counts, horizon, rng):
-    """People who may come in each period ahead: Poisson numbers at a rate from the gamma posterior of the count."""
+def observe(reality, entrances, train):
+    """Simulates one period of the reality. Returns the counts at its doors and the density after each second."""
+    platform = train if TRAIN_SECS[0] <= reality.time < TRAIN_SECS[1] else CALM
+    for entrance in entrances:
+        reality.set_rate(entrance["name"], platform if entrance["name"].startswith("train") else STREET)
+    densities = []
+    for _ in range(PERIOD):
+        advance(reality, 1)
+        densities.append(density(reality))
+    return counts_of(reality.events().entered, entrances), densities
+
+
+def take_in(twin, counts):
+    """Simulates the period of the counts in the twin, in which as many people enter as were counted."""
+    for name, count in counts.items():
+        twin.set_rate(name, count / PERIOD)
+    advance(twin, PERIOD)
+
+
+def draw(counts, people, horizon, rng):
+    """What a fork does not know: arrivals per period ahead at each entrance, and the preferred speeds of those inside.
+
+    An entrance's rate comes from the gamma posterior of its count. Poisson numbers at this rate are its arrivals.
+    """
     periods = -(-horizon // PERIOD)
-    return {name: rng.poisson(rng.gamma(count + 0.5), periods) for name, count in counts.items()}
+    arrivals = {name: rng.poisson(rng.gamma(count + 0.5), periods) for name, count in counts.items()}
+    return arrivals, np.clip(rng.normal(SPEED["mean"], SPEED["std"], people), SPEED["min"], SPEED["max"])
 
 
-def look_ahead(fork, future, speeds, horizon, place=FEARED):
-    """The density at a place in each of the next `horizon` seconds, if people come in as in `future`."""
+def look_ahead(fork, arrivals, speeds, horizon, place):
+    """The density at a place after each second, up to the horizon."""
     fork.set_speed(fork.ids, speeds)
     densities = []
     for second in range(horizon):
         if second % PERIOD == 0:
-            for name, numbers in future.items():
+            for name, numbers in arrivals.items():
                 fork.set_rate(name, numbers[second // PERIOD] / PERIOD)
         advance(fork, 1)
         densities.append(density(fork, place))
     return densities
 
 
-def forecast(twin, counts, horizon=60, forks=20, seed=0, place=FEARED, workers=None):
-    """Densities at a place, P/m², of shape (forks, horizon): one row per fork of the twin, one column per second."""
+def forecast(twin, counts, horizon=60, forks=20, seed=0, place=PLACE, workers=None):
+    """Densities at a place, P/m², of shape (forks, horizon): a row per fork of the twin, a column per second."""
     rng = np.random.default_rng([seed, twin.frame])
-    jobs = []
-    for _ in range(forks):
-        speeds = np.clip(rng.normal(SPEED["mean"], SPEED["std"], len(twin)), SPEED["min"], SPEED["max"])
-        jobs.append((twin.fork(), drawn_future(counts, horizon, rng), speeds))
+    draws = [draw(counts, len(twin.ids), horizon, rng) for _ in range(forks)]
+    jobs = [(twin.fork(), arrivals, speeds, horizon, place) for arrivals, speeds in draws]
     with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
-        return np.array(list(pool.map(lambda job: look_ahead(*job, horizon, place), jobs)))
+        return np.array(list(pool.map(lambda job: look_ahead(*job), jobs)))
 
 
-def take_in(twin, counts):
-    """The last period again, now with the people who were counted in it."""
-    for name, count in counts.items():
-        twin.set_rate(name, count / PERIOD)
-    advance(twin, PERIOD)
+def band(densities):
+    """The lower and the upper end of the band in each second."""
+    return np.quantile(densities, BAND, axis=0)
 
 
-def observe(reality):
-    """One period of the reality: the counts at its doors, and the density in each second."""
-    now = reality.time
-    for one in ENTRANCES(reality):
-        with_train = TRAIN_AT[0] <= now < TRAIN_AT[1]
-        reality.set_rate(one["name"], FROM_TRAIN[with_train] if "train" in one["name"] else STREET)
+def print_hits(bands, truth, horizon):
+    """Prints how many values of the reality, one per second, lie inside of the bands of earlier forecasts."""
+    print(f"\nvalues of the reality inside of the bands ({BAND[0]:.0%} to {BAND[1]:.0%} of the forks):")
+    for begin in range(0, horizon, PERIOD):
+        ahead = range(begin + 1, min(begin + PERIOD, horizon) + 1)
+        pairs = [(bands[now][:, secs - 1], truth[now + secs]) for now in bands for secs in ahead if now + secs in truth]
+        hits = sum(low <= value <= high for (low, high), value in pairs)
+        print(f"{ahead[0]:3d} to {ahead[-1]:2d} s ahead: {hits} of {len(pairs)}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--horizon", type=int, default=60, help="how far ahead the forks run, s")
+    parser.add_argument("--forks", type=int, default=20)
+    parser.add_argument("--until", type=int, default=180, help="the end of the reality, s")
+    parser.add_argument("--people", type=int, default=1, metavar="N", help="N halls with N times the people")
+    parser.add_argument("--train", type=float, default=5.0, help="people per second from the train")
+    parser.add_argument("--seed", type=int, default=1, help="of the reality and of the draws")
+    args = parser.parse_args()
+
+    scenario = hall(1000 + args.seed, "poisson", args.people)
+    reality, entrances = sc.Simulation(scenario), scenario["entrances"]
+    twin = sc.Simulation(hall(1, "constant", args.people))
+    reality.events()  # begins to watch
+    bands, truth = {}, {}
+    print(f"           counts       density, P/m²    band in {args.horizon} s,  people    of real")
+    print("time    train  street    twin  reality      P/m²       in twin     time")
+    for now in range(PERIOD, args.until + 1, PERIOD):
+        counts, seen = observe(reality, entrances, args.train)
+        truth |= {now - PERIOD + k: value for k, value in enumerate(seen, 1)}
+        begun = time.perf_counter()
+        take_in(twin, counts)
+        bands[now] = band(forecast(twin, counts, args.horizon, args.forks, args.seed))
+        share, (low, high) = (time.perf_counter() - begun) / PERIOD, bands[now][:, -1]
+        train, street = counts["train 0"], counts["street 0"]
+        print(f"{now:3d} s {train:7d} {street:7d} {density(twin):7.2f} {truth[now]:8.2f}", end="   ")
+        print(f"{low:6.2f} – {high:.2f} {len(twin.ids):9d} {share:10.0%}")
+    print_hits(bands, truth, args.horizon)
+
+
+if __name__ == "__main__":
+    main()

@@ -4,11 +4,12 @@ use proptest::prelude::*;
 use rayon::prelude::*;
 use sandbox::engine::math::Vector;
 use sandbox::engine::simulation::Simulation;
+use sandbox::runs::summary::Summary;
 use sandbox::scenario::measurements::Left;
 use serde_json::{Value, json};
 
 use crate::common::bounded::config;
-use crate::common::simulated::{after, measured, scenario, start};
+use crate::common::simulated::{after, driven, measured, scenario, start};
 
 /// A room of 10 × 10 m with a door of this width in a wall of this thickness, and an exit `behind` meters behind the
 /// door; `None`: on the edge of the plan, without a wall.
@@ -140,11 +141,15 @@ proptest! {
         room["crowds"][0]["number"] = json!(60);
         room["duration_secs"] = json!(40);
         room["measurements"] = json!([{"line_flow": {"name": "near", "line": [[9.95, 0], [9.95, 10]]}}]);
-        let summary = measured(room);
+        let run = driven(&room);
+        let summary = Summary::of(&run);
         let passed = summary.data["near"].as_array().unwrap().len();
+        // Who touches the line of the exit and meets somebody from the other side leaves before it.
+        let arrivals = run.simulation.outcome().arrivals.iter();
+        let early = arrivals.filter(|one| one.position.x <= 9.95).count();
         // Who has passed the line and stands before the exit when the run ends is on the way.
         let between = passed - summary.arrived.min(passed);
-        prop_assert!(summary.arrived <= passed && between <= 2, "{} left, {passed} passed", summary.arrived);
+        prop_assert!(summary.arrived <= passed + early && between <= 2, "{} left, {passed} passed", summary.arrived);
     }
 }
 

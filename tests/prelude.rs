@@ -222,6 +222,7 @@ fn place_of(fault: &Fault) -> Option<Vector> {
             agent: _,
             obstacle: _,
         }
+        | Fault::Model { .. }
         | Fault::DifferentStates { force: _ } => None,
     }
 }

@@ -20,7 +20,7 @@ use sandbox::scenario::Scenario;
 use crate::events::Watch;
 use crate::given::{Given, check_memory};
 use crate::model::{GivenModel, Raised, arrays_of};
-use crate::values::{array, column, vector};
+use crate::values::{array, columns, dictionary, vector};
 use crate::{check_process, error};
 
 /// Why a simulation does not go on.
@@ -362,15 +362,6 @@ impl Native {
     }
 }
 
-/// Columns by name.
-fn dictionary(py: Python<'_>, columns: Columns) -> PyResult<Bound<'_, PyDict>> {
-    let all = PyDict::new(py);
-    for (name, values) in columns.into_values() {
-        all.set_item(name, column(py, values)?)?;
-    }
-    Ok(all)
-}
-
 impl Native {
     fn begun(
         given: Given,
@@ -493,21 +484,4 @@ fn with_model(scenario: &mut Scenario, model: Option<GivenModel>) -> Raised {
     };
     scenario.scene.set_model(model);
     raised
-}
-
-/// The names of the columns, all if none are given.
-fn columns(wanted: Option<Vec<String>>) -> PyResult<Vec<&'static str>> {
-    let all = Columns::all().map(|(name, _)| name);
-    let Some(wanted) = wanted else {
-        return Ok(all.collect());
-    };
-    let all: Vec<&str> = all.collect();
-    if let Some(unknown) = wanted.iter().find(|name| !all.contains(&name.as_str())) {
-        let known = all.join(", ");
-        return Err(error(format!(
-            "columns: no column `{unknown}`; there are {known}"
-        )));
-    }
-    let is_wanted = |name: &&str| wanted.iter().any(|wanted| wanted == name);
-    Ok(all.into_iter().filter(is_wanted).collect())
 }

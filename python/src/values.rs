@@ -1,9 +1,11 @@
 //! Arrays as bytes, which NumPy reads without another copy.
 
 use pyo3::prelude::*;
-use pyo3::types::PyByteArray;
+use pyo3::types::{PyByteArray, PyDict};
 use sandbox::engine::math::Vector;
-use sandbox::output::trajectory::Column;
+use sandbox::output::trajectory::{Column, Columns};
+
+use crate::error;
 
 /// A new array of `count` values of `SIZE` bytes, which `value` gives.
 pub fn array<const SIZE: usize>(
@@ -48,4 +50,30 @@ pub fn column(py: Python<'_>, column: Column) -> PyResult<Values<'_>> {
             ("int32", bytes, Some(names))
         }
     })
+}
+
+/// Columns by name.
+pub fn dictionary(py: Python<'_>, columns: Columns) -> PyResult<Bound<'_, PyDict>> {
+    let all = PyDict::new(py);
+    for (name, values) in columns.into_values() {
+        all.set_item(name, column(py, values)?)?;
+    }
+    Ok(all)
+}
+
+/// The names of the columns, all if none are given.
+pub fn columns(wanted: Option<Vec<String>>) -> PyResult<Vec<&'static str>> {
+    let all = Columns::all().map(|(name, _)| name);
+    let Some(wanted) = wanted else {
+        return Ok(all.collect());
+    };
+    let all: Vec<&str> = all.collect();
+    if let Some(unknown) = wanted.iter().find(|name| !all.contains(&name.as_str())) {
+        let known = all.join(", ");
+        return Err(error(format!(
+            "columns: no column `{unknown}`; there are {known}"
+        )));
+    }
+    let is_wanted = |name: &&str| wanted.iter().any(|wanted| wanted == name);
+    Ok(all.into_iter().filter(is_wanted).collect())
 }

@@ -96,8 +96,8 @@ pub struct Agents {
     /// The heading that the agent follows by the choice of headings, held until the next coarse frame: its number,
     /// counted from the one along the way, positive to its left. Empty if no profile has this law.
     pub heading: Vec<i8>,
-    /// What a [`Model`](crate::forces::model::Model) of one's own gave, m/s² or m/s, held until it is asked again; `None`
-    /// for agents that entered since. Empty without such a model.
+    /// What a [`Model`](crate::forces::model::Model) of one's own gave, m/s² or m/s, held until it is asked again;
+    /// `None` for agents that entered since. Empty without such a model.
     pub own: Vec<Option<Vector>>,
     /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
     /// only, otherwise empty.

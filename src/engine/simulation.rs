@@ -19,6 +19,7 @@ mod passing;
 mod plans;
 mod progress;
 mod queues;
+mod refused;
 mod schedule;
 mod schemes;
 mod situation;
@@ -31,13 +32,16 @@ mod trips;
 
 pub use choice::{Decision, Prospect, Reason};
 pub use closed::Closed;
-pub use control::{Absent, ActionError, Added};
+pub use control::Added;
 pub use entrances::Backlog;
 pub use expected::Expected;
 pub use limited::{Limited, SPOT_RADIUS};
 pub use passing::{BEFORE_WALLS, WALKS_ON};
 pub use plans::RouteDecision;
 pub use progress::{PlaceState, Progress};
+#[doc(hidden)]
+pub use refused::refused_change;
+pub use refused::{Absent, ActionError};
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};

@@ -28,8 +28,8 @@ pub trait Model: Any + Debug + Send + Sync {
     /// How its accelerations limit the time step, as for a [`Force`].
     fn rates(&self, of: &Extremes) -> Rates;
 
-    /// The accelerations, m/s², or velocities, m/s, of all agents of a frozen frame, in their order: finite vectors that
-    /// depend only on the frame. Accelerations of the frame are not computed yet.
+    /// The accelerations, m/s², or velocities, m/s, of all agents of a frozen frame, in their order: finite vectors
+    /// that depend only on the frame. Accelerations of the frame are not computed yet.
     ///
     /// # Errors
     /// Why there are none, for [`Fault::Model`](crate::simulation::Fault::Model).

@@ -4,10 +4,9 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-use serde::Deserialize;
 use serde_json::Value;
 
-use crate::error::{Problem, Under, in_plain_words};
+use crate::error::{Problem, Under};
 use crate::file::{File, meant, range};
 use crate::keys::limits::MOST_NUMBERED;
 use crate::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE};
@@ -15,6 +14,7 @@ use crate::keys::people::{Behavior, People};
 use crate::keys::profiles::{ProfileChoice, ProfileName};
 use crate::keys::shapes::region;
 use crate::read::draft::{Draft, Inputs};
+use crate::read::parsed::parsed;
 use crate::read::plans::Plans;
 use crate::read::scenario::Scenario;
 use crate::read::{curves, data, late, plans, preset};
@@ -208,15 +208,6 @@ fn likely_cause(problem: Problem, without_effect: &Result<Vec<String>, Problem>)
 fn shared(group: &Value) -> Result<(), Problem> {
     parsed::<Behavior>(group)?;
     parsed::<People>(group).map(drop)
-}
-
-/// The value of a type, or the first problem and its place.
-pub fn parsed<'a, T: Deserialize<'a>>(value: &'a Value) -> Result<T, Problem> {
-    serde_path_to_error::deserialize(value).map_err(|error| {
-        let path = error.path().to_string();
-        let path = if path == "." { String::new() } else { path };
-        Problem::new(path, in_plain_words(&error.into_inner().to_string()))
-    })
 }
 
 /// Removes `$schema`, by which editors find the schema.

@@ -7,6 +7,7 @@ pub mod document;
 pub mod draft;
 pub mod effective;
 pub mod late;
+pub mod parsed;
 pub mod plans;
 pub mod preset;
 pub mod scenario;

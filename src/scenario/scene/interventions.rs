@@ -86,6 +86,7 @@ pub fn action(keys: &Keys, scene: &Scene) -> Result<Action, Problem> {
         return Ok(Action::Remove(ids.clone()));
     }
     if let Some(set) = &keys.set_goal {
+        on_floor("goals", &set.goals, scene).under("set_goal")?;
         let goals = each(&set.agents, &set.goals);
         return Ok(Action::Goals(goals.under("set_goal.goals")?));
     }
@@ -152,6 +153,10 @@ fn added(keys: &Add, names: &Names) -> Result<Action, Problem> {
             return Err(Problem::new(key, reason));
         }
     }
+    on_floor("positions", &keys.positions, names.0)?;
+    if has_goal {
+        on_floor("goals", &keys.goals, names.0)?;
+    }
     let new = keys.positions.iter().enumerate().map(|(k, &position)| {
         let goal = keys.goals.get(k).copied().unwrap_or(position);
         NewAgent {
@@ -163,6 +168,19 @@ fn added(keys: &Add, names: &Names) -> Result<Action, Problem> {
         }
     });
     Ok(Action::Add(new.collect()))
+}
+
+/// Refuses points off the floor.
+fn on_floor(key: &str, points: &[Point], scene: &Scene) -> Result<(), Problem> {
+    for (k, &Point([x, y])) in points.iter().enumerate() {
+        if scene.walls.obstacle_at(Vector::new(x, y)).is_some() {
+            let reason = format!(
+                "({x}, {y}) lies in an obstacle or outside of the walkable area; move it onto the floor"
+            );
+            return Err(Problem::new(format!("{key}[{k}]"), reason));
+        }
+    }
+    Ok(())
 }
 
 /// The values of agents: one for all, or one for each.
@@ -279,7 +297,12 @@ impl Names<'_> {
             return Ok(Action::Entrance { entrance, open });
         }
         let place = self.place("exit, door, entrance or waiting area", name)?;
-        Ok(Action::Place { place, change })
+        let action = Action::Place { place, change };
+        let refused = engine::simulation::refused_change(&self.0.journeys.places, place, change);
+        match refused {
+            Some(error) => Err(Problem::new("", error.to_string())),
+            None => Ok(action),
+        }
     }
 }
 

@@ -1,0 +1,170 @@
+"""examples/forecast.py: the band is that of its forks, the twin stays as it is, and the counts are those of doors."""
+
+import importlib.util
+import re
+from pathlib import Path
+
+import numpy
+import pytest
+import shapely
+
+import sandbox_crowds as sc
+
+ROOT = Path(__file__).parents[2]
+COUNTS = {"train 0": 45, "street 0": 9}
+HORIZON = 12
+BEFORE_GAP, BEHIND_DOOR = [[21, 6], [24, 10]], [[0, 0], [6, 8]]
+
+
+@pytest.fixture
+def script():
+    spec = importlib.util.spec_from_file_location("forecast", ROOT / "examples/forecast.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def twin(script):
+    """A twin with a crowd before the gap."""
+    twin = sc.Simulation(script.hall(1, "constant"))
+    for _ in range(4):
+        script.take_in(twin, COUNTS)
+    return twin
+
+
+def stepped_by_hand(script, twin, forks, seed, place):
+    """The densities of the forecast by other code: one fork after the other, people counted by shapely."""
+    rng = numpy.random.default_rng([seed, twin.frame])
+    area = shapely.box(*place[0], *place[1])
+    rows = []
+    for _ in range(forks):
+        arrivals, speeds = script.draw(COUNTS, len(twin.ids), HORIZON, rng)
+        fork, row = twin.fork(), []
+        fork.set_speed(fork.ids, speeds)
+        for second in range(HORIZON):
+            for name in COUNTS if second in (0, 10) else ():
+                fork.set_rate(name, int(arrivals[name][second // 10]) / 10)
+            end = fork.time + 1
+            while fork.time < end - 1e-6:
+                fork.step()
+            row.append(sum(area.covers(shapely.Point(point)) for point in fork.positions) / area.area)
+        rows.append(row)
+    return numpy.array(rows)
+
+
+@pytest.mark.parametrize("place", [BEFORE_GAP, BEHIND_DOOR])
+def test_the_band_is_that_of_forks_stepped_by_hand(script, twin, place):
+    forks = 6
+    by_hand = stepped_by_hand(script, twin, forks, 3, place)
+    ahead = script.forecast(twin, COUNTS, HORIZON, forks, 3, numpy.array(place))
+    numpy.testing.assert_allclose(ahead, by_hand, rtol=0, atol=1e-12)
+    assert by_hand.max() > 0.3 and numpy.ptp(by_hand, axis=0).max() > 0  # there is a crowd, and the forks differ
+    low, high = script.band(ahead)
+    assert low.shape == high.shape == (HORIZON,)
+    assert (low <= high).all()
+    assert (by_hand.min(axis=0) <= low).all() and (high <= by_hand.max(axis=0)).all()
+    # With six forks, at most one is below 5 % and one above 95 %.
+    assert ((by_hand < low).sum(axis=0) <= 1).all() and ((by_hand > high).sum(axis=0) <= 1).all()
+
+
+def test_the_same_forecast_twice_is_the_same_and_leaves_the_twin_as_it_is(script, twin):
+    before, alone = twin.state_sha256, twin.fork()
+    first = script.forecast(twin, COUNTS, HORIZON, forks=3, seed=5, workers=1)
+    again = script.forecast(twin, COUNTS, HORIZON, forks=3, seed=5, workers=3)
+    other = script.forecast(twin, COUNTS, HORIZON, forks=3, seed=6)
+    numpy.testing.assert_array_equal(script.band(first), script.band(again))
+    assert (first != other).any()
+    assert twin.state_sha256 == before
+    for one in (twin, alone):
+        script.take_in(one, COUNTS)
+    assert twin.state_sha256 == alone.state_sha256
+
+
+def entries_by_door(simulation, frames):
+    """How many people entered in the south and in the north half of the hall, by their ids in every frame."""
+    known = set(simulation.ids.tolist())
+    south = north = 0
+    for _ in range(frames):
+        simulation.step()
+        for id, (_, y) in zip(simulation.ids.tolist(), simulation.positions):
+            if id not in known:
+                known.add(id)
+                south, north = (south + 1, north) if y < 8 else (south, north + 1)
+    return {"train 0": south, "street 0": north}
+
+
+def test_the_counts_are_those_who_entered_the_reality(script, monkeypatch):
+    scenario = script.hall(7, "poisson")
+    reality = sc.Simulation(scenario)
+    reality.events()
+    frames = round(script.PERIOD / reality.time_step)
+    for train in (0.5, 5.0):
+        monkeypatch.setattr(script, "TRAIN_SECS", [reality.time, reality.time + 10])
+        copy = reality.fork()
+        counts, densities = script.observe(reality, scenario["entrances"], train)
+        copy.set_rate("train 0", train)
+        copy.set_rate("street 0", script.STREET)
+        assert entries_by_door(copy, frames) == counts
+        assert copy.state_sha256 == reality.state_sha256
+        assert len(densities) == script.PERIOD
+        assert reality.events().entered.size == 0
+    assert sum(counts.values()) > 30
+
+
+@pytest.mark.parametrize("counts", [COUNTS, {"train 0": 0, "street 0": 1}, {"train 0": 3, "street 0": 0}])
+def test_as_many_people_enter_the_twin_as_were_counted(script, counts):
+    twin, copy = (sc.Simulation(script.hall(1, "constant")) for _ in range(2))
+    for _ in range(3):
+        script.take_in(twin, counts)
+        for name, count in counts.items():
+            copy.set_rate(name, count / 10)
+        assert entries_by_door(copy, round(10 / copy.time_step)) == counts
+    assert copy.state_sha256 == twin.state_sha256
+
+
+def test_drawn_arrivals_vary_as_rates_and_people_do(script):
+    """Poisson numbers at a rate of the gamma distribution: mean n + ½, variance 2 (n + ½)."""
+    rng = numpy.random.default_rng(1)
+    drawn = [script.draw({"door": 20}, 5, 25, rng) for _ in range(4000)]
+    arrivals = numpy.array([numbers["door"] for numbers, _ in drawn])
+    assert arrivals.shape == (4000, 3)
+    assert arrivals[:, 0].mean() == pytest.approx(20.5, abs=0.5)
+    assert arrivals[:, 0].var() == pytest.approx(41, rel=0.12)
+    speeds = numpy.array([speeds for _, speeds in drawn])
+    assert speeds.shape == (4000, 5)
+    assert speeds.mean() == pytest.approx(1.34, abs=0.02) and 0.5 <= speeds.min() <= speeds.max() <= 2.2
+
+
+def test_halls_are_counted_apart(script):
+    scenario = script.hall(1, "constant", halls=12)
+    simulation = sc.Simulation(scenario)
+    simulation.events()
+    counts = {entrance["name"]: k % 4 for k, entrance in enumerate(scenario["entrances"])}
+    script.take_in(simulation, counts)
+    assert script.counts_of(simulation.events().entered, scenario["entrances"]) == counts
+
+
+@pytest.mark.parametrize("densities, hits", [([0.0, 99.0], True), ([98.0, 99.0], False)])
+def test_what_it_prints(script, monkeypatch, capsys, densities, hits):
+    """A line per period with the counts of the reality, and how many of its values are in bands with all or none."""
+
+    def forecast(twin, counts, horizon, forks, seed):
+        return numpy.tile(numpy.array(densities)[:, None], horizon)
+
+    monkeypatch.setattr(script, "BAND", [0, 1])
+    monkeypatch.setattr(script, "TRAIN_SECS", [10, 20])
+    monkeypatch.setattr(script, "forecast", forecast)
+    monkeypatch.setattr("sys.argv", "forecast.py --until 30 --horizon 15 --seed 4".split())
+    script.main()
+    text = capsys.readouterr().out
+    scenario = script.hall(1004, "poisson")
+    reality = sc.Simulation(scenario)
+    reality.events()
+    expected = [list(script.observe(reality, scenario["entrances"], 5.0)[0].values()) for _ in range(3)]
+    printed = [line.split() for line in text.splitlines() if re.match(r" *\d+ s ", line)]
+    assert [int(line[0]) for line in printed] == [10, 20, 30]
+    assert [[int(line[2]), int(line[3])] for line in printed] == expected
+    # Forecasts at 10, 20 and 30 s of a reality that ends at 30 s.
+    found = re.findall(r"(\d+) to +(\d+) s ahead: (\d+) of (\d+)", text)
+    assert [[int(number) for number in one] for one in found] == [[1, 10, 20 * hits, 20], [11, 15, 5 * hits, 5]]
