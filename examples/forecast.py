@@ -1,7 +1,7 @@
 """A forecast: counts at doors drive a twin of a hall, and forks of the twin show how dense it may get before a gap.
 
     python forecast.py                 # 180 s; every 10 s a forecast of the next 60 s
-    python forecast.py --train 0.5     # the same without a train
+    python forecast.py --train 0       # the same without a train
 
 Every 10 s the twin takes in the number of people who came through each door, as a camera would count them. Then its
 forks run ahead, with arrivals drawn from what the counts say about the rates. The "reality" is another simulation of
@@ -21,7 +21,8 @@ PERIOD = 10  # s, from one count to the next
 PLACE = np.array([[21, 6], [24, 10]])  # m, the area before the gap: lower left and upper right corner
 SPEED = {"mean": 1.34, "std": 0.26, "min": 0.5, "max": 2.2}  # preferred speeds, m/s
 BAND = [0.05, 0.95]  # quantiles
-CALM, STREET, TRAIN_SECS = 0.5, 0.8, [60, 100]  # P/s from the platform without a train and from the street; s
+RATES = {"platform": 0.5, "street": 0.8}  # P/s, in the reality
+TRAIN = [60, 100]  # s, when more people come from the platform
 
 
 def hall(seed, arrivals, halls=1):
@@ -34,13 +35,22 @@ def hall(seed, arrivals, halls=1):
         for name, *y in [("north", 10, 14), ("south", 2, 6)]:
             exits.append({"name": f"{name} {k}", "line": [[40 + shift[0], end + shift[1]] for end in y]})
         journeys.append({"name": f"out {k}", "stages": [{"shares": {f"north {k}": 3, f"south {k}": 2}}]})
-        for name, *y in [("train", 1, 6), ("street", 10, 15)]:
+        for name, *y in [("platform", 1, 6), ("street", 10, 15)]:
             line = [[shift[0], end + shift[1]] for end in y]
-            flow = {"arrivals": arrivals, "per_sec": CALM, "from_secs": 1, "preferred_speed": {"normal": SPEED}}
+            flow = {"arrivals": arrivals, "per_sec": RATES[name], "from_secs": 1, "preferred_speed": {"normal": SPEED}}
             entrances.append({"name": f"{name} {k}", "line": line, "journey": f"out {k}"} | flow)
     floor = {"walkable_area": areas, "exits": exits, "entrances": entrances, "journeys": journeys}
     model = {"profile": "steer+sph", "preset": "fast", "route_choice": "shortest"}
     return {"name": "hall", "seed": seed, "duration_secs": 3600} | model | floor
+
+
+def hall_with_train(seed, per_sec, halls=1):
+    """The scenario of the reality: people arrive at random, and those of a train by the line of the platform."""
+    scenario = hall(seed, "poisson", halls)
+    for entrance in scenario["entrances"][::2] if per_sec > 0 else []:
+        train = {"name": "train at " + entrance["name"], "from_secs": TRAIN[0], "until_secs": TRAIN[1]}
+        scenario["entrances"].append(entrance | train | {"per_sec": per_sec})
+    return scenario
 
 
 def advance(simulation, secs):
@@ -55,24 +65,21 @@ def density(simulation, place=PLACE):
     return inside.all(axis=1).sum() / np.prod(high - low)
 
 
-def counts_of(entered, entrances):
-    """How many people entered at each entrance: each at the one whose middle is nearest to the first position."""
-    middles = np.array([np.mean(entrance["line"], axis=0) for entrance in entrances])
+def counts_of(entered, doors):
+    """How many people entered at each door: each at the one whose middle is nearest to the first position."""
+    middles = np.array([np.mean(door["line"], axis=0) for door in doors])
     first = np.column_stack([entered["x"], entered["y"]])
     nearest = np.linalg.norm(first[:, None] - middles, axis=2).argmin(axis=1)
-    return {entrance["name"]: int((nearest == k).sum()) for k, entrance in enumerate(entrances)}
+    return {door["name"]: int((nearest == k).sum()) for k, door in enumerate(doors)}
 
 
-def observe(reality, entrances, train):
+def observe(reality, doors):
     """Simulates one period of the reality. Returns the counts at its doors and the density after each second."""
-    platform = train if TRAIN_SECS[0] <= reality.time < TRAIN_SECS[1] else CALM
-    for entrance in entrances:
-        reality.set_rate(entrance["name"], platform if entrance["name"].startswith("train") else STREET)
     densities = []
     for _ in range(PERIOD):
         advance(reality, 1)
         densities.append(density(reality))
-    return counts_of(reality.events().entered, entrances), densities
+    return counts_of(reality.events().entered, doors), densities
 
 
 def take_in(twin, counts):
@@ -139,22 +146,22 @@ def main():
     parser.add_argument("--seed", type=int, default=1, help="of the reality and of the draws")
     args = parser.parse_args()
 
-    scenario = hall(1000 + args.seed, "poisson", args.people)
-    reality, entrances = sc.Simulation(scenario), scenario["entrances"]
-    twin = sc.Simulation(hall(1, "constant", args.people))
+    known = hall(1, "constant", args.people)
+    twin = sc.Simulation(known)
+    reality = sc.Simulation(hall_with_train(1000 + args.seed, args.train, args.people))
     reality.events()  # begins to watch
     bands, truth = {}, {}
-    print(f"           counts       density, P/m²    band in {args.horizon} s,  people    of real")
-    print("time    train  street    twin  reality      P/m²       in twin     time")
+    print(f"             counts       density, P/m²    band in {args.horizon} s,  people    of real")
+    print("time   platform  street    twin  reality      P/m²       in twin     time")
     for now in range(PERIOD, args.until + 1, PERIOD):
-        counts, seen = observe(reality, entrances, args.train)
+        counts, seen = observe(reality, known["entrances"])
         truth |= {now - PERIOD + k: value for k, value in enumerate(seen, 1)}
         begun = time.perf_counter()
         take_in(twin, counts)
         bands[now] = band(forecast(twin, counts, args.horizon, args.forks, args.seed))
         share, (low, high) = (time.perf_counter() - begun) / PERIOD, bands[now][:, -1]
-        train, street = counts["train 0"], counts["street 0"]
-        print(f"{now:3d} s {train:7d} {street:7d} {density(twin):7.2f} {truth[now]:8.2f}", end="   ")
+        platform, street = counts["platform 0"], counts["street 0"]
+        print(f"{now:3d} s {platform:9d} {street:7d} {density(twin):7.2f} {truth[now]:8.2f}", end="   ")
         print(f"{low:6.2f} – {high:.2f} {len(twin.ids):9d} {share:10.0%}")
     print_hits(bands, truth, args.horizon)
 

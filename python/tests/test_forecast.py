@@ -11,7 +11,7 @@ import shapely
 import sandbox_crowds as sc
 
 ROOT = Path(__file__).parents[2]
-COUNTS = {"train 0": 45, "street 0": 9}
+COUNTS = {"platform 0": 45, "street 0": 9}
 HORIZON = 12
 BEFORE_GAP, BEHIND_DOOR = [[21, 6], [24, 10]], [[0, 0], [6, 8]]
 
@@ -91,28 +91,35 @@ def entries_by_door(simulation, frames):
             if id not in known:
                 known.add(id)
                 south, north = (south + 1, north) if y < 8 else (south, north + 1)
-    return {"train 0": south, "street 0": north}
+    return {"platform 0": south, "street 0": north}
 
 
 def test_the_counts_are_those_who_entered_the_reality(script, monkeypatch):
-    scenario = script.hall(7, "poisson")
-    reality = sc.Simulation(scenario)
+    monkeypatch.setattr(script, "TRAIN", [10, 20])
+    doors = script.hall(7, "poisson")["entrances"]
+    reality = sc.Simulation(script.hall_with_train(7, 5.0))
     reality.events()
-    frames = round(script.PERIOD / reality.time_step)
-    for train in (0.5, 5.0):
-        monkeypatch.setattr(script, "TRAIN_SECS", [reality.time, reality.time + 10])
-        copy = reality.fork()
-        counts, densities = script.observe(reality, scenario["entrances"], train)
-        copy.set_rate("train 0", train)
-        copy.set_rate("street 0", script.STREET)
-        assert entries_by_door(copy, frames) == counts
-        assert copy.state_sha256 == reality.state_sha256
-        assert len(densities) == script.PERIOD
+    copy = reality.fork()
+    for _ in range(3):
+        counts, densities = script.observe(reality, doors)
+        assert entries_by_door(copy, round(script.PERIOD / copy.time_step)) == counts
+        assert len(densities) == script.PERIOD and densities[-1] == script.density(copy)
         assert reality.events().entered.size == 0
-    assert sum(counts.values()) > 30
+        assert 20 < sum(counts.values()) if 10 < reality.time < 21 else sum(counts.values()) < 30
+    assert copy.state_sha256 == reality.state_sha256
 
 
-@pytest.mark.parametrize("counts", [COUNTS, {"train 0": 0, "street 0": 1}, {"train 0": 3, "street 0": 0}])
+def test_arrivals_of_the_reality_go_on_at_their_rates(script):
+    reality = sc.Simulation(script.hall_with_train(2, 0))
+    reality.events()
+    script.advance(reality, 300)
+    entered = reality.events().entered
+    assert len(entered) == pytest.approx(1.3 * 299, abs=4 * (1.3 * 299) ** 0.5)
+    assert (entered["y"] < 8).sum() == pytest.approx(0.5 * 299, abs=4 * (0.5 * 299) ** 0.5)
+    assert numpy.diff(entered["time"]).max() < 12
+
+
+@pytest.mark.parametrize("counts", [COUNTS, {"platform 0": 0, "street 0": 1}, {"platform 0": 3, "street 0": 0}])
 def test_as_many_people_enter_the_twin_as_were_counted(script, counts):
     twin, copy = (sc.Simulation(script.hall(1, "constant")) for _ in range(2))
     for _ in range(3):
@@ -153,15 +160,15 @@ def test_what_it_prints(script, monkeypatch, capsys, densities, hits):
         return numpy.tile(numpy.array(densities)[:, None], horizon)
 
     monkeypatch.setattr(script, "BAND", [0, 1])
-    monkeypatch.setattr(script, "TRAIN_SECS", [10, 20])
+    monkeypatch.setattr(script, "TRAIN", [10, 20])
     monkeypatch.setattr(script, "forecast", forecast)
     monkeypatch.setattr("sys.argv", "forecast.py --until 30 --horizon 15 --seed 4".split())
     script.main()
     text = capsys.readouterr().out
-    scenario = script.hall(1004, "poisson")
-    reality = sc.Simulation(scenario)
+    doors = script.hall(1004, "poisson")["entrances"]
+    reality = sc.Simulation(script.hall_with_train(1004, 5.0))
     reality.events()
-    expected = [list(script.observe(reality, scenario["entrances"], 5.0)[0].values()) for _ in range(3)]
+    expected = [list(script.observe(reality, doors)[0].values()) for _ in range(3)]
     printed = [line.split() for line in text.splitlines() if re.match(r" *\d+ s ", line)]
     assert [int(line[0]) for line in printed] == [10, 20, 30]
     assert [[int(line[2]), int(line[3])] for line in printed] == expected

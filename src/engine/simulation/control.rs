@@ -109,7 +109,7 @@ impl Simulation {
 
     /// All interventions from outside, in the order of their frames.
     pub fn interventions(&self) -> &[Intervention] {
-        self.crowd.interventions.from_outside()
+        self.crowd.interventions.outside()
     }
 
     fn plan(&mut self, action: Action) {

@@ -163,8 +163,8 @@ impl Simulation {
         });
     }
 
-    /// Step 2, a model of one's own: asks it for all agents, or only for those that entered since if it is not its time.
-    /// Velocities that it gives take the place of those toward goals.
+    /// Step 2, a model of one's own: asks it for all agents, or, if it is not its time, only for those that entered
+    /// since. Velocities that it gives take the place of those toward goals.
     pub(super) fn follow_model(&mut self) -> Result<(), Fault> {
         let Some(own) = &self.fixed.scene.model else {
             return Ok(());

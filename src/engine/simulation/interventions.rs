@@ -25,7 +25,7 @@ pub(super) struct Interventions {
 
 impl Interventions {
     /// All from outside, in the order of their frames.
-    pub(super) fn from_outside(&self) -> &[Intervention] {
+    pub(super) fn outside(&self) -> &[Intervention] {
         &self.from_outside
     }
 
