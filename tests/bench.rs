@@ -177,10 +177,15 @@ fn computing_everything_does_not_change_the_motion() {
                 .filter(|stage| !spent.contains(stage))
                 .collect()
         };
-        // The scene has no sources, pushes, journeys and path maps.
+        // The scene has no sources, pushes, journeys, path maps and models of one's own.
         assert_eq!(
             skipped(&paying),
-            [Stage::Schedule, Stage::Journeys, Stage::Routes],
+            [
+                Stage::Schedule,
+                Stage::Journeys,
+                Stage::Routes,
+                Stage::OwnModel
+            ],
             "{name}: everything was computed"
         );
         assert!(skipped(&needed).len() > 1, "{name}");

@@ -19,8 +19,11 @@ use std::path::Path;
 
 use crate::common::simulated::scenario;
 
-/// Programs of actions for each scene; ten thousand were run once.
-const PROGRAMS: u64 = 12;
+/// Programs of actions for each scene: 12, times `BAD_INPUT_TIMES` if that is set; ten thousand were run once.
+fn programs() -> std::ops::Range<u64> {
+    let times = std::env::var("BAD_INPUT_TIMES").map_or(1, |times| times.parse().unwrap());
+    0..12 * times
+}
 
 /// Scenes of all kinds of stages, with a door that closes, people who arrive, and the profiles for real people and of
 /// the paper.
@@ -240,7 +243,7 @@ fn outcome(run: &Run) -> (String, Vec<String>) {
 fn all_kinds_of_actions_are_done_in_these_programs() {
     let mut done = BTreeSet::new();
     for document in &scenes() {
-        for seed in 0..PROGRAMS {
+        for seed in programs() {
             let mut run = begun(document);
             followed(&mut run, seed);
             let played = run.played();
@@ -272,7 +275,7 @@ fn all_kinds_of_actions_are_done_in_these_programs() {
 #[test]
 fn forks_and_saved_runs_go_on_to_the_same_bits() {
     for (k, document) in scenes().iter().enumerate() {
-        for seed in 0..PROGRAMS {
+        for seed in programs() {
             let mut run = begun(document);
             followed(&mut run, seed);
             let mut fork = run.fork().unwrap();
