@@ -72,6 +72,7 @@ pub mod prelude {
     pub use crate::engine::agents::NewAgent;
     pub use crate::engine::breakdown::Breakdown;
     pub use crate::engine::clock::Clock;
+    pub use crate::engine::forces::model::{Gives, Model, OwnModel};
     pub use crate::engine::forces::own::Force;
     pub use crate::engine::forces::rates::{Extremes, Rates};
     pub use crate::engine::frame::Frame;
@@ -79,8 +80,8 @@ pub mod prelude {
     pub use crate::engine::math::Vector;
     pub use crate::engine::placement::Grid;
     pub use crate::engine::profile::{Blend, BlendStep, Navigation, Profile};
-    pub use crate::engine::scene::{Group, Integrator, Region, Scene};
-    pub use crate::engine::simulation::{Fault, Outcome, Simulation};
+    pub use crate::engine::scene::{Action, Group, Integrator, Intervention, Region, Scene};
+    pub use crate::engine::simulation::{ActionError, Added, Fault, Outcome, Simulation};
     pub use crate::runs::drive::{End, Observer, Run};
     pub use crate::scenario::catalog::{self, Parameters};
     pub use crate::scenario::{Scenario, ScenarioError, Setting};

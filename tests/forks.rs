@@ -17,6 +17,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use crate::common::busy::hall;
 use crate::common::simulated::scenario;
 
 /// Programs of actions for each scene: 12, times `BAD_INPUT_TIMES` if that is set; ten thousand were run once.
@@ -272,43 +273,45 @@ fn all_kinds_of_actions_are_done_in_these_programs() {
     assert_eq!(done, all.map(str::to_owned).into());
 }
 
+/// A run, its fork and what was saved of it, on one to three threads, and a run of its scenario end in the same state.
+fn check_copies(document: &Value, seed: u64, told: &str) {
+    let mut run = begun(document);
+    followed(&mut run, seed);
+    let mut fork = run.fork().unwrap();
+    let saved = Checkpoint::of(&run.scenario, &run.simulation, &run.metrics);
+    let saved = Checkpoint::parse(&saved.bytes().unwrap(), Path::new("saved")).unwrap();
+    let again = saved.scenario(&[]).unwrap();
+    let mut resumed = saved.resume(again).unwrap();
+    show(&mut resumed);
+    assert_eq!(outcome(&resumed), outcome(&run), "{told}");
+    followed(&mut run, seed + 1000);
+    on_threads(2, || followed(&mut fork, seed + 1000));
+    on_threads(3, || followed(&mut resumed, seed + 1000));
+    assert_eq!(outcome(&fork), outcome(&run), "{told}: fork");
+    assert_eq!(outcome(&resumed), outcome(&run), "{told}: resumed");
+    let again = on_threads(1 + seed as usize % 3, || replayed(&run));
+    let [again, run] = [&again, &run].map(|run| run.simulation.digest());
+    assert_eq!(again, run, "{told}: by file");
+}
+
 #[test]
 fn forks_and_saved_runs_go_on_to_the_same_bits() {
     for (k, document) in scenes().iter().enumerate() {
         for seed in programs() {
-            let mut run = begun(document);
-            followed(&mut run, seed);
-            let mut fork = run.fork().unwrap();
-            let saved = Checkpoint::of(&run.scenario, &run.simulation, &run.metrics);
-            let saved = Checkpoint::parse(&saved.bytes().unwrap(), Path::new("saved")).unwrap();
-            let again = saved.scenario(&[]).unwrap();
-            let mut resumed = saved.resume(again).unwrap();
-            show(&mut resumed);
-            assert_eq!(
-                outcome(&resumed),
-                outcome(&run),
-                "scene {k}, program {seed}"
-            );
-            followed(&mut run, seed + 1000);
-            on_threads(2, || followed(&mut fork, seed + 1000));
-            on_threads(3, || followed(&mut resumed, seed + 1000));
-            assert_eq!(
-                outcome(&fork),
-                outcome(&run),
-                "scene {k}, program {seed}: fork"
-            );
-            assert_eq!(
-                outcome(&resumed),
-                outcome(&run),
-                "scene {k}, program {seed}: resumed"
-            );
-            let again = on_threads(1 + seed as usize % 3, || replayed(&run));
-            assert_eq!(
-                again.simulation.digest(),
-                run.simulation.digest(),
-                "scene {k}, program {seed}: by file"
-            );
+            check_copies(document, seed, &format!("scene {k}, program {seed}"));
         }
+    }
+}
+
+#[test]
+fn so_do_those_of_random_scenes() {
+    for seed in programs() {
+        let mut chance = ChaCha8Rng::seed_from_u64(seed);
+        let mut document = hall(&mut chance, 50);
+        if chance.random() {
+            document["profile"] = json!("steer+sph");
+        }
+        check_copies(&document, seed, &format!("hall {seed}"));
     }
 }
 

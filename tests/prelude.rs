@@ -397,3 +397,66 @@ fn a_force_of_ones_own_acts_keeps_a_state_and_is_explained() {
     let (name, blown) = states[0].values[0];
     assert!(name == "blown_secs" && (blown - 1.0).abs() < 1e-9);
 }
+
+#[test]
+fn a_simulation_is_controlled_and_records_what_was_done() {
+    let mut simulation = Simulation::new(scene()).unwrap();
+    simulation.evaluate().unwrap();
+    let goal = Vector::new(9.0, 3.0);
+    let free = NewAgent::at(Vector::new(7.0, 6.0), goal, 0);
+    let Added { ids, without_room } = simulation.add(&[free, free]).unwrap();
+    assert_eq!((ids, without_room), (vec![7], vec![1]));
+    simulation.intervene(Action::Remove(vec![0])).unwrap();
+    let refused = simulation.intervene(Action::Speeds(vec![(99, 1.0)]));
+    assert!(matches!(refused, Err(ActionError::Absent(99, _))));
+    simulation.set_goals(&[(7, Vector::zeros())]).unwrap();
+    simulation.integrate().unwrap();
+    simulation.evaluate().unwrap();
+    assert!(simulation.present(7).is_ok() && simulation.present(0).is_err());
+    let frames = simulation
+        .interventions()
+        .iter()
+        .map(|Intervention { frame, action: _ }| *frame);
+    assert_eq!(frames.collect::<Vec<_>>(), [1, 1, 1]);
+}
+
+/// All people are pushed along x.
+#[derive(Debug)]
+struct Breeze;
+
+impl Model for Breeze {
+    fn name(&self) -> &str {
+        "breeze"
+    }
+
+    fn rates(&self, _: &Extremes) -> Rates {
+        Rates::default()
+    }
+
+    fn vectors(&self, frame: &Frame) -> Result<Vec<Vector>, String> {
+        Ok(vec![Vector::x(); frame.agents.len()])
+    }
+}
+
+#[test]
+fn a_model_of_ones_own_gives_accelerations_or_velocities() {
+    let given = [
+        Gives::Accelerations,
+        Gives::AllAccelerations,
+        Gives::Velocities,
+    ];
+    let first = given.map(|gives| {
+        let mut scene = scene();
+        scene.set_model(OwnModel {
+            model: Arc::new(Breeze),
+            gives,
+            coarse: true,
+        });
+        let mut simulation = Simulation::new(scene).unwrap();
+        let frame = simulation.evaluate().unwrap();
+        let fields = frame.fields;
+        (fields.acceleration[0], fields.preferred_velocity[0])
+    });
+    assert_ne!(first[0].0, Vector::x());
+    assert_eq!((first[1].0, first[2].1), (Vector::x(), Vector::x()));
+}
