@@ -47,6 +47,8 @@ pub struct Native {
     /// The recording, and the number of frames from one recorded to the next.
     recording: Option<(Recorder, u64)>,
     watch: Option<Watch>,
+    /// Whether the current frame has been evaluated and observed: not after an exception in a model.
+    is_seen: bool,
 }
 
 #[pymethods]
@@ -268,6 +270,7 @@ impl Native {
             raised: self.raised.clone(),
             recording: None,
             watch: self.watch.clone(),
+            is_seen: self.is_seen,
         })
     }
 
@@ -404,6 +407,7 @@ impl Native {
             raised,
             recording: None,
             watch: None,
+            is_seen: false,
         };
         new.evaluate().map_err(|fault| new.laid_open(fault))?;
         Ok(new)
@@ -434,12 +438,17 @@ impl Native {
     }
 
     fn step(&mut self) -> Result<(), Fault> {
+        if !self.is_seen {
+            self.evaluate()?;
+        }
         self.run.simulation.integrate()?;
+        self.is_seen = false;
         self.evaluate()
     }
 
     fn evaluate(&mut self) -> Result<(), Fault> {
         self.run.simulation.evaluate()?;
+        self.is_seen = true;
         self.run.measure();
         if let Some(watch) = &mut self.watch {
             watch.observe(&self.run.simulation);

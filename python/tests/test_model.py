@@ -204,6 +204,31 @@ def test_a_model_that_fails_is_an_error(corridor, function, error, message):
         sc.Simulation(corridor, model=sc.Model(function))
 
 
+def test_a_simulation_goes_on_after_an_exception_as_without(corridor):
+    asked = []
+
+    def moody(frame):
+        asked.append(frame.number)
+        if len(asked) in interrupted:
+            raise KeyError("later")
+        return numpy.zeros_like(frame.positions)
+
+    outcomes = []
+    for interrupted in [(), (40, 41, 97)]:
+        asked.clear()
+        simulation = sc.Simulation(corridor, model=sc.Model(moody))
+        simulation.events()
+        exceptions = 0
+        while simulation.frame < 400 or exceptions < len(interrupted):
+            try:
+                simulation.step(400 - simulation.frame)
+            except KeyError:
+                exceptions += 1
+        told = [part.tolist() for part in simulation.events()]
+        outcomes.append((simulation.state_sha256, simulation.measurements["metrics"], told))
+    assert outcomes[0] == outcomes[1]
+
+
 def test_settings_of_a_model_are_checked():
     for settings, message in [
         ({"gives": "forces"}, 'give "accelerations" or "velocities"'),
