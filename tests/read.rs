@@ -188,6 +188,23 @@ fn mistakes_are_reported_with_the_line_and_the_fix() {
         ),
         (
             "a.csv",
+            "id;frame;time;x;y\n1;0;0,00;0,0;0,5\n".to_owned(),
+            "a.csv:1: the first line must name the columns id, frame, x and y; here columns are separated by \
+             semicolons: separate them by commas, and write numbers with points",
+        ),
+        (
+            "a.csv",
+            "\"t\",\"id\",\"x\",\"y\"\n0,1,0,0\n".to_owned(),
+            "a.csv:1: the first line must name the columns id, frame, x and y; here it names a time and no frame: add a \
+             column with the number of the frame",
+        ),
+        (
+            "a.csv",
+            "id,frame,time[h],x,y\n1,0,0,0,0\n".to_owned(),
+            "a.csv:1: the unit \"h\" of the time is not known; s and ms are",
+        ),
+        (
+            "a.csv",
             "frame,time,id,pos_x,pos_y\n0,0,1,0,0\n1,0.1,1,zero,0\n".to_owned(),
             "a.csv:3: x is \"zero\", not a finite number",
         ),
@@ -257,7 +274,7 @@ fn frame_rates_out_of_range_are_refused_with_their_line() {
     ] {
         let text = format!("id,frame,x,y,time\n1,0,0,0,0\n1,1,0,0,{time}\n");
         let said = read_as("a.csv", &text, &PLAIN).unwrap_err();
-        assert!(said.starts_with("a.csv:3: frame 1 at "), "{said}");
+        assert!(said.starts_with("a.csv: frame 1 at "), "{said}");
         let end = format!("makes {fps} frames per second: frame f is at f / fps; give --fps");
         assert!(said.ends_with(&end), "{said}");
         assert_eq!(read_as("a.csv", &text, &given).unwrap().fps, 5.0);
@@ -368,5 +385,68 @@ fn a_database_without_trajectories_is_refused() {
         drop(connection);
         let error = read(&path, &PLAIN).unwrap_err().to_string();
         assert_eq!(error, format!("{}: {expected}", path.display()));
+    }
+}
+
+/// People who walk along x at 1.25 m/s, a row per frame; `time` writes the time of a frame.
+fn walkers(fps: f64, time: impl Fn(f64) -> String, header: &str) -> String {
+    let mut text = format!("id,frame,{header},x[m],y[m]\n");
+    for id in 1..=3 {
+        for frame in 1..=200 {
+            let secs = f64::from(frame) / fps;
+            let x = 1.25 * (secs - 0.8 * f64::from(id));
+            text += &format!("{id},{frame},{},{x:.4},0.5\n", time(secs));
+        }
+    }
+    text
+}
+
+#[test]
+fn the_frame_rate_is_what_all_times_say() {
+    // Of 30 frames per second with times of two digits, the first row says 33.3.
+    for (fps, digits) in [
+        (30.0, 2),
+        (24.0, 1),
+        (25.0, 3),
+        (29.97, 4),
+        (12.5, 2),
+        (16.0, 6),
+    ] {
+        let text = walkers(fps, |secs| format!("{secs:.digits$}"), "time");
+        let found = read_as("a.csv", &text, &PLAIN).unwrap().fps;
+        assert!((found / fps - 1.0).abs() < 1e-5, "{found} for {fps}");
+        let is_whole = fps.fract() == 0.0;
+        assert!(!is_whole || found == fps, "{found} for {fps}");
+    }
+    // Times that do not begin at 0, and milliseconds.
+    let late = walkers(25.0, |secs| format!("{:.3}", secs + 3600.0), "time");
+    assert_eq!(read_as("a.csv", &late, &PLAIN).unwrap().fps, 25.0);
+    let fine = walkers(25.0, |secs| format!("{:.0}", 1000.0 * secs), "time[ms]");
+    assert_eq!(read_as("a.csv", &fine, &PLAIN).unwrap().fps, 25.0);
+}
+
+#[test]
+fn texts_with_other_ends_of_lines_or_letters_are_read_or_named() {
+    let text = "# framerate: 25\n# id frame x/m y/m\n1 0 0 0\n1 1 0.05 0\n2 1 1 1\n";
+    let plain = read_as("a.txt", text, &PLAIN).unwrap();
+    for ends in ["\r", "\r\n"] {
+        let other = read_as("a.txt", &text.replace('\n', ends), &PLAIN).unwrap();
+        assert_eq!((&other.frames, &other.ids), (&plain.frames, &plain.ids));
+        assert_eq!(other.len(), 3);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.txt");
+    for (mark, unit) in [([0xff, 0xfe], 0), ([0xfe, 0xff], 1)] {
+        let letters = text.encode_utf16().map(|letter| match unit {
+            0 => letter.to_le_bytes(),
+            _ => letter.to_be_bytes(),
+        });
+        let bytes: Vec<u8> = mark.into_iter().chain(letters.flatten()).collect();
+        std::fs::write(&path, bytes).unwrap();
+        let said = read(&path, &PLAIN).unwrap_err().to_string();
+        assert!(
+            said.ends_with("a.txt: UTF-16 text; save it as UTF-8"),
+            "{said}"
+        );
     }
 }

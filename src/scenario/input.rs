@@ -75,12 +75,17 @@ fn text_of(bytes: Vec<u8>) -> Result<String> {
 
 /// What bytes are that are not UTF-8, by their beginning.
 fn not_text(bytes: &[u8]) -> &'static str {
-    match bytes {
-        [0x1f, 0x8b, ..] => "a file compressed by gzip, not text; unpack it",
-        [b'P', b'K', 3, 4, ..] => "a zip archive, not text; unpack it",
-        [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => "UTF-32 text; save it as UTF-8",
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "UTF-16 text; save it as UTF-8",
-        _ => "not UTF-8 text; save it as UTF-8",
+    other_than_text(bytes).unwrap_or("not UTF-8 text; save it as UTF-8")
+}
+
+/// What a file is that is no UTF-8 text, if its beginning says so.
+pub fn other_than_text(start: &[u8]) -> Option<&'static str> {
+    match start {
+        [0x1f, 0x8b, ..] => Some("a file compressed by gzip, not text; unpack it"),
+        [b'P', b'K', 3, 4, ..] => Some("a zip archive, not text; unpack it"),
+        [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => Some("UTF-32 text; save it as UTF-8"),
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Some("UTF-16 text; save it as UTF-8"),
+        _ => None,
     }
 }
 
@@ -99,10 +104,13 @@ pub fn rest(file: impl Read, most: u64) -> Result<Vec<u8>> {
 }
 
 /// A reader that fails after about [`LONGEST_LINE`] bytes unless [`next_line`](Self::next_line) is called in
-/// between. Under a buffered line reader it bounds the memory that an endless line can take.
+/// between. Under a buffered line reader it bounds the memory that an endless line can take. Lines that end with a
+/// carriage return alone, as the first ones show, end with a line feed instead.
 pub struct Lines<R> {
     file: R,
     left: u64,
+    /// Whether lines end with carriage returns alone; `None` before the first bytes.
+    returns: Option<bool>,
 }
 
 impl<R: Read> Lines<R> {
@@ -111,6 +119,7 @@ impl<R: Read> Lines<R> {
         Self {
             file,
             left: LONGEST_LINE,
+            returns: None,
         }
     }
 
@@ -129,6 +138,15 @@ impl<R: Read> Read for Lines<R> {
         let most = buffer.len().min(self.left as usize);
         let read = self.file.read(&mut buffer[..most])?;
         self.left -= read as u64;
+        let bytes = &mut buffer[..read];
+        let is_first = self.returns.is_none() && read > 0;
+        if is_first {
+            self.returns = Some(bytes.contains(&b'\r') && !bytes.contains(&b'\n'));
+        }
+        if self.returns == Some(true) {
+            let ends = bytes.iter_mut().filter(|byte| **byte == b'\r');
+            ends.for_each(|byte| *byte = b'\n');
+        }
         Ok(read)
     }
 }

@@ -19,6 +19,8 @@ pub struct Columns {
     x: usize,
     y: usize,
     pub time: Option<usize>,
+    /// The unit of times, seconds.
+    pub seconds: f64,
     pub mass: Option<usize>,
 }
 
@@ -31,6 +33,7 @@ impl Default for Columns {
             x: 2,
             y: 3,
             time: None,
+            seconds: 1.0,
             mass: None,
         }
     }
@@ -50,12 +53,24 @@ impl Columns {
         else {
             return Ok(None);
         };
+        let time = find(&["time"]);
+        let seconds = match time.map_or("", |time| names[time].1.as_str()) {
+            "" | "s" | "sec" | "secs" | "seconds" => 1.0,
+            "ms" | "milliseconds" => 1e-3,
+            other => {
+                return Err(format!(
+                    "the unit \"{}\" of the time is not known; s and ms are",
+                    shown(other)
+                ));
+            }
+        };
         let columns = Self {
             id,
             frame,
             x,
             y,
-            time: find(&["time"]),
+            time,
+            seconds,
             mass: find(&["mass"]),
         };
         let name = names[x].1.as_str();

@@ -10,6 +10,7 @@
 //! Results are in meters and seconds. Frame f is at the time f / fps.
 
 use crate::error::quote::shown;
+use crate::input::other_than_text;
 mod columns;
 mod error;
 #[cfg(feature = "program")]
@@ -169,6 +170,9 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
             path,
             "a recording has no trajectories to read; run its scenario again with --trajectory FILE",
         ));
+    }
+    if let Some(other) = other_than_text(&start) {
+        return Err(ReadError::file(path, other));
     }
     match Format::of(path, &start) {
         #[cfg(feature = "program")]

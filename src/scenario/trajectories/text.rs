@@ -2,6 +2,7 @@
 
 use crate::input;
 use crate::input::Lines;
+use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
@@ -114,7 +115,21 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
     reader.get_mut().next_line();
     let names: Vec<&str> = header.iter().collect();
     let head = |problem: String| ReadError::line(path, 1, problem);
-    let missing = || head("the first line must name the columns id, frame, x and y".to_owned());
+    let has = |known: &[&str]| names.iter().any(|name| known.contains(name));
+    let missing = || {
+        let why = match names[..] {
+            [one] if one.contains(';') => {
+                "; here columns are separated by semicolons: separate them by commas, and write numbers with points"
+            }
+            _ if has(&["t", "time"]) && !has(&["frame"]) => {
+                "; here it names a time and no frame: add a column with the number of the frame"
+            }
+            _ => "",
+        };
+        head(format!(
+            "the first line must name the columns id, frame, x and y{why}"
+        ))
+    };
     let found = Columns::named(&names).map_err(head)?;
     let (columns, unit) = found.ok_or_else(missing)?;
     let mut contents = Contents {
@@ -124,6 +139,7 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
         place: "line",
         ..Contents::default()
     };
+    let mut times = Times::default();
     let mut record = csv::StringRecord::new();
     loop {
         let begun = reader.position().line();
@@ -136,25 +152,63 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
         let cells: Vec<&str> = record.iter().collect();
         let failed = |problem| ReadError::line(path, line, problem);
         let entry = columns.entry(&cells, line).map_err(failed)?;
-        if contents.fps.is_none() && entry.frame > 0 {
-            let rate = rate(&cells, &columns, entry.frame).map(|rate| options.own_rate(rate));
-            contents.fps = rate.transpose().map_err(failed)?.flatten();
-        }
+        times.add(&cells, &columns, entry.frame);
         contents.entries.push(entry);
     }
+    let rate = times.rate().map(|rate| options.own_rate(rate));
+    let rate = rate
+        .transpose()
+        .map_err(|problem| ReadError::file(path, problem))?;
+    contents.fps = rate.flatten();
     Tracks::new(path, contents, options)
 }
 
-/// The frame rate, if there are times. Rounded to nine significant digits, because times are rounded.
-fn rate(cells: &[&str], columns: &Columns, frame: i64) -> Option<Result<f64, String>> {
-    let time: f64 = cells.get(columns.time?)?.parse().ok()?;
-    let fps = frame as f64 / time;
-    if !FRAME_RATES.contains(&fps) {
-        let reason = format!(
-            "frame {frame} at {time:e} s makes {fps:e} frames per second: frame f is at f / fps; give --fps"
-        );
-        return Some(Err(reason));
+/// What times say of the frame rate: the first time of each frame, seconds.
+#[derive(Default)]
+struct Times(BTreeMap<i64, f64>);
+
+impl Times {
+    fn add(&mut self, cells: &[&str], columns: &Columns, frame: i64) {
+        let place = columns.time.and_then(|place| cells.get(place));
+        // A time that is no finite number makes no frame rate, which `rate` says.
+        if let Some(time) = place.and_then(|cell| cell.parse::<f64>().ok()) {
+            self.0.entry(frame).or_insert(time * columns.seconds);
+        }
     }
-    let unit = 10_f64.powi(8 - fps.log10().floor() as i32);
-    Some(Ok((fps * unit).round() / unit))
+
+    /// The frame rate: the slope of the line through all times, or through frame 0 at 0 s if there is only one. Times
+    /// are rounded: a whole number that fits them about as well is meant.
+    fn rate(&self) -> Option<Result<f64, String>> {
+        /// A whole rate may miss a time by this many times what the slope misses, and by rounding.
+        const AS_WELL: f64 = 1.5;
+        const ROUNDING: f64 = 1e-9;
+        let (&last, &end) = self.0.last_key_value()?;
+        let count = self.0.len() as f64;
+        let times = || self.0.iter().map(|(&frame, &time)| (frame as f64, time));
+        let [frame, time] = times().fold([0.0; 2], |[f, t], (frame, time)| {
+            [f + frame / count, t + time / count]
+        });
+        let products = times().map(|(f, t)| [(f - frame) * (t - time), (f - frame).powi(2)]);
+        let [both, square] = products.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+        let fps = match self.0.len() {
+            1 if last <= 0 => return None,
+            1 => last as f64 / end,
+            _ => square / both,
+        };
+        if !FRAME_RATES.contains(&fps) {
+            return Some(Err(format!(
+                "frame {last} at {end:e} s makes {fps:e} frames per second: frame f is at f / fps; give --fps"
+            )));
+        }
+        let misses = |fps: f64| {
+            let miss = |(f, t): (f64, f64)| (t - time - (f - frame) / fps).abs();
+            times().map(miss).fold(0.0, f64::max)
+        };
+        let whole = fps.round();
+        if whole > 0.0 && misses(whole) <= AS_WELL * misses(fps) + ROUNDING {
+            return Some(Ok(whole));
+        }
+        let unit = 10_f64.powi(8 - fps.log10().floor() as i32);
+        Some(Ok((fps * unit).round() / unit))
+    }
 }
