@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _given
+from ._model import Model
 from ._native import Error, Native
 
 if TYPE_CHECKING:
@@ -27,6 +29,7 @@ class Control:
     and saved states and forks go on with it."""
 
     _native: Native
+    _model: Model | None
 
     def _keep_now(self) -> None:
         """Keeps a snapshot with what was done, for `rewind`."""
@@ -171,6 +174,8 @@ class Control:
     def scenario(self) -> dict[str, Any]:
         """The scenario up to the current frame, with all that was done in `interventions`. A run of it, by
         `sandbox run` or `run`, ends in the same state: it has the same `state_sha256`."""
+        if self._model is not None:
+            warnings.warn(f"the scenario does not have the model {self._model.name}: give it to `run`, too", stacklevel=2)
         return json.loads(self._native.played())
 
 

@@ -67,6 +67,11 @@ def native(
         name, text = path_of(scenario), None
     else:
         raise TypeError(f"a scenario is a dict or a path, not {type(scenario).__name__}")
+    if model is not None and not isinstance(model, Model):
+        raise TypeError("model: give sc.Model(function, …)")
+    for key, value in settings.items():
+        if isinstance(value, Model):
+            raise TypeError(f"{key}: a model is given as `model=`")
     begun = _native.Native(
         {
             "name": name,

@@ -123,12 +123,14 @@ class Model:
         }
 
     def _call(self, time: tuple[int, float, float], people: list[Any], around: list[Any]) -> bytes:
-        return self._vectors(frame_of(time, people, around)).tobytes()
+        return self._vectors(frame_of(time, people, around, self.reach)).tobytes()
 
     def _vectors(self, frame: Frame) -> numpy.ndarray:
         import numpy
 
         given = self.function(frame)
+        if given is None:
+            raise Error(f"the model {self.name}: it returned None; is there a `return`?")
         try:
             vectors = numpy.ascontiguousarray(given, dtype="float64")
         except (TypeError, ValueError) as problem:
@@ -139,7 +141,21 @@ class Model:
         return vectors
 
 
-def frame_of(time: tuple[int, float, float], people: list[Any], around: list[Any]) -> Frame:
+class _WithoutReach:
+    """Stands for pairs and walls of a model without a reach: any use of it is an error."""
+
+    def _refuse(self, *_: Any, **__: Any) -> Any:
+        raise Error("the model has no `reach`, so it gets no pairs and walls: give sc.Model(function, reach=…), m")
+
+    __array__ = __getitem__ = __iter__ = __len__ = _refuse
+
+    def __getattr__(self, name: str) -> Any:
+        self._refuse()
+
+
+def frame_of(
+    time: tuple[int, float, float], people: list[Any], around: list[Any], reach: float
+) -> Frame:
     import numpy
 
     def array(data: Any, kind: str, *shape: int) -> numpy.ndarray:
@@ -148,7 +164,10 @@ def frame_of(time: tuple[int, float, float], people: list[Any], around: list[Any
         return values.reshape(shape) if shape else values
 
     ids, positions, velocities, radii, masses, preferred, densities, goals = people
-    first, second, separations, wall_people, wall_points = around
+    kinds = [("int64",), ("int64",), ("float64", -1, 2), ("int64",), ("float64", -1, 2)]
+    near: list[Any] = [array(data, *kind) for data, kind in zip(around, kinds)]
+    if reach == 0:
+        near = [_WithoutReach()] * len(near)
     return Frame(
         *time,
         ids=array(ids, "int64"),
@@ -159,16 +178,20 @@ def frame_of(time: tuple[int, float, float], people: list[Any], around: list[Any
         preferred_velocities=array(preferred, "float64", -1, 2),
         densities=array(densities, "float64"),
         goals=array(goals, "float64", -1, 2),
-        first=array(first, "int64"),
-        second=array(second, "int64"),
-        separations=array(separations, "float64", -1, 2),
-        wall_people=array(wall_people, "int64"),
-        wall_points=array(wall_points, "float64", -1, 2),
+        first=near[0],
+        second=near[1],
+        separations=near[2],
+        wall_people=near[3],
+        wall_points=near[4],
     )
 
 
 def _sums(rows: numpy.ndarray, values: numpy.ndarray, count: int) -> numpy.ndarray:
     import numpy
+
+    values = numpy.asarray(values, dtype="float64")
+    if values.shape != (len(rows), 2):
+        raise Error(f"sums: give one vector for each of {len(rows)} rows, not an array of shape {values.shape}")
 
     x = numpy.bincount(rows, weights=values[:, 0], minlength=count)
     y = numpy.bincount(rows, weights=values[:, 1], minlength=count)
@@ -197,6 +220,8 @@ def measured(model: Model, frame: Frame) -> tuple[float, float]:
         return rate
 
     def moved(by: numpy.ndarray) -> Frame:
+        if model.reach == 0:
+            return frame._replace(positions=frame.positions + by)
         return frame._replace(
             positions=frame.positions + by,
             separations=frame.separations + by[frame.first] - by[frame.second],
@@ -212,8 +237,9 @@ def warn_of_step(native: Any, model: Model | None) -> None:
     """Warns if the step is too long for a model."""
     stable = native.stable_step
     if model is not None and stable is not None and native.time_step > stable * (1 + 1e-9):
+        step = 0.1 / math.ceil(0.1 / stable)  # pictures and trajectories have whole frames per 0.1 s
         warnings.warn(
             f"the model {model.name} is stable up to steps of {stable:g} s, and the step is {native.time_step:g} s: set "
-            f"time_step_secs={stable:g}",
+            f"time_step_secs={step:g}",
             stacklevel=4,
         )

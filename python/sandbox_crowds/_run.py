@@ -203,17 +203,17 @@ class Run:
 
     def _of_recording(self, command: str, options: dict[str, Any]) -> str:
         """Runs a command on a recording of this run: the program does not know the model."""
-        given = {name: value for name, value in options.items() if name not in ("force", "save")}
+        given = {name: value for name, value in options.items() if name != "save"}
         if command == "inspect":
             again = self._again()
             again.step(round(options["at"] / again.time_step))
             return json.dumps({"agents": [again.inspect(options["agent"])]})
-        path = options.get("save")
-        if command == "run" and path is None:
+        path = options.get("save") or options.get("out")
+        if command == "run" and "save" not in options:
             raise Error("the program does not know the model: write `Run.trajectory`, or save .rrd or .html")
         if path is not None and os.path.exists(path) and not options.get("force"):
             raise Error(f"{path} exists; give force=True to replace it")
-        if path is not None and path.lower().endswith(".rrd"):
+        if path is not None and os.fspath(path).lower().endswith(".rrd"):
             self._record(path)
             return ""
         with tempfile.TemporaryDirectory() as folder:

@@ -166,7 +166,12 @@ class Simulation(Control):
         """
         restored = Simulation.__new__(Simulation)
         given = None if model is None else model._given()
-        restored._begin(Native.restored(bytes(saved), given), model)
+        try:
+            native = Native.restored(bytes(saved), given)
+        except Error as problem:
+            hint = "; if it had a model, give it to `restore`" if model is None and "belong" in str(problem) else ""
+            raise Error(f"{problem}{hint}") from None
+        restored._begin(native, model)
         return restored
 
     def keep(self, every: float = 1.0, most: int = 60) -> None:
@@ -219,7 +224,7 @@ class Simulation(Control):
         """
         if self._model is None:
             raise Error("measure_model: the simulation has no model of one's own")
-        frame = frame_of(*self._native.model_frame(self._model.reach))
+        frame = frame_of(*self._native.model_frame(self._model.reach), self._model.reach)
         stiffness, friction = measured(self._model, frame)
         return {"stiffness": stiffness, "friction": friction}
 

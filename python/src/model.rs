@@ -9,7 +9,9 @@ use sandbox::engine::forces::model::{Gives, Model, OwnModel};
 use sandbox::engine::forces::rates::{Extremes, Rates};
 use sandbox::engine::frame::Frame;
 use sandbox::engine::math::Vector;
+use sandbox::engine::scene::Scene;
 
+use crate::error;
 use crate::values::{array, vector};
 
 /// Agents per parallel task when pairs are listed.
@@ -30,6 +32,21 @@ pub struct GivenModel {
 }
 
 impl GivenModel {
+    /// Refuses a reach at which people would see one another twice in a periodic scene.
+    pub fn check(&self, scene: &Scene) -> PyResult<()> {
+        match scene
+            .period
+            .filter(|period| 2.0 * self.reach > period.length)
+        {
+            None => Ok(()),
+            Some(period) => Err(error(format!(
+                "reach={}: at most {} m, half of the period",
+                self.reach,
+                0.5 * period.length
+            ))),
+        }
+    }
+
     /// The model for a scene, and the exception that its function raises.
     pub fn model(self) -> (OwnModel, Raised) {
         let gives = match self.gives.as_str() {

@@ -299,7 +299,7 @@ impl Native {
                 ));
             }
             let mut scenario = checkpoint.scenario(&[]).map_err(error)?;
-            let raised = with_model(&mut scenario, model);
+            let raised = with_model(&mut scenario, model)?;
             let run = checkpoint.resume(scenario).map_err(error)?;
             rayon::scope(|_| Self::of(run, None, raised))
         })
@@ -372,7 +372,7 @@ impl Native {
         model: Option<GivenModel>,
     ) -> PyResult<Self> {
         let mut scenario = given.scenario()?;
-        let raised = with_model(&mut scenario, model);
+        let raised = with_model(&mut scenario, model)?;
         let columns = match collect {
             Some((fps, wanted)) => Some((fps, columns(wanted)?)),
             None => None,
@@ -487,10 +487,12 @@ impl Native {
 }
 
 /// Gives a scenario a model of one's own.
-fn with_model(scenario: &mut Scenario, model: Option<GivenModel>) -> Raised {
-    let Some((model, raised)) = model.map(GivenModel::model) else {
-        return Raised::default();
+fn with_model(scenario: &mut Scenario, model: Option<GivenModel>) -> PyResult<Raised> {
+    let Some(given) = model else {
+        return Ok(Raised::default());
     };
+    given.check(&scenario.scene)?;
+    let (model, raised) = given.model();
     scenario.scene.set_model(model);
-    raised
+    Ok(raised)
 }

@@ -72,7 +72,9 @@ def test_the_example_forms_lanes():
         own.CORRIDOR, model=own.MODEL, profile="sf", parameters={"agent_strength": 0, "goal_scale": 0}, progress=False
     )
 
-    def order(at):
+    without = sc.run(own.CORRIDOR, profile="sf", parameters={"agent_strength": 0}, progress=False)
+
+    def order(run, at):
         """The order of bands by Rex and Löwen (2007): 1 if nobody has anybody from the other side beside, 0 if mixed."""
         rows = run.agents(at)
         beside = numpy.abs(rows.pos_y.to_numpy()[:, None] - rows.pos_y.to_numpy()[None]) < 0.4
@@ -81,7 +83,8 @@ def test_the_example_forms_lanes():
         alike, others = (beside & same).sum(1), (beside & ~same).sum(1)
         return numpy.mean(((alike - others) / numpy.maximum(1, alike + others)) ** 2)
 
-    assert order(0) < 0.25 and order(60) > 0.6
+    assert order(run, 0) < 0.25 and order(run, 20) > 0.75 and order(run, 60) > 0.95
+    assert order(without, 20) < 0.4  # people who only touch each other do not
 
 
 def test_a_frame_has_everyone_and_everything_within_reach(corridor):
@@ -197,6 +200,8 @@ def fails(frame):
         (lambda frame: [[0, 0]], sc.Error, r"it returned an array of shape \(1, 2\), not \(8, 2\)"),
         (lambda frame: frame.positions * numpy.nan, sc.Error, "for agent . is not finite"),
         (lambda frame: "fast", sc.Error, "it must return an array of numbers"),
+        (lambda frame: None, sc.Error, "it returned None; is there a `return`?"),
+        (lambda frame: frame.sum_over_pairs(frame.separations), sc.Error, "the model has no `reach`"),
     ],
 )
 def test_a_model_that_fails_is_an_error(corridor, function, error, message):
@@ -239,6 +244,25 @@ def test_settings_of_a_model_are_checked():
             sc.Model(lambda frame: frame.positions, **settings)
 
 
+def test_what_is_no_model_or_does_not_fit_is_an_error(corridor):
+    def still(frame):
+        return 0 * frame.positions
+
+    with pytest.raises(TypeError, match=r"model: give sc.Model\(function, …\)"):
+        sc.Simulation(corridor, model=still)
+    with pytest.raises(TypeError, match="modle: a model is given as `model=`"):
+        sc.Simulation(corridor, modle=sc.Model(still))
+    ring = {"periodic": {"axis": "x", "length": 8}, "walkable_area": [[[[0, 0], [8, 0], [8, 3], [0, 3]]]]}
+    ring["crowds"] = [{"area": [[0, 0], [8, 0], [8, 3], [0, 3]], "number": 5, "goal": {"direction": [1, 0]}}]
+    with pytest.raises(sc.Error, match="reach=5: at most 4 m, half of the period"):
+        sc.Simulation(ring, model=sc.Model(still, reach=5), profile="sf", parameters={"avoidance_radius": 3})
+    with pytest.raises(sc.Error, match=r"give one vector for each of \d+ rows, not an array of shape \(8, 2\)"):
+        sc.Simulation(corridor, model=sc.Model(lambda frame: frame.sum_over_pairs(frame.positions), reach=0.9))
+    simulation = sc.Simulation(corridor, model=sc.Model(still, coarse=True))
+    with pytest.warns(UserWarning, match="the scenario does not have the model still"):
+        simulation.scenario()
+
+
 def test_the_step_is_short_enough_or_a_warning_says_so(corridor):
     def spring(frame):
         return -900.0 * (frame.positions - [6, 1]) - 12.0 * frame.velocities
@@ -252,7 +276,7 @@ def test_the_step_is_short_enough_or_a_warning_says_so(corridor):
         slow = sc.Simulation(corridor, model=stiff, time_step_secs=0.1)
     with warnings.catch_warnings():
         warnings.filterwarnings("error", message="the model")
-        sc.Simulation(corridor, model=stiff, time_step_secs=slow._native.stable_step)
+        sc.Simulation(corridor, model=stiff, time_step_secs=0.1 / numpy.ceil(0.1 / slow._native.stable_step))
 
 
 def test_pictures_recordings_and_inspection_of_a_run_have_the_model(corridor, tmp_path):
@@ -266,6 +290,12 @@ def test_pictures_recordings_and_inspection_of_a_run_have_the_model(corridor, tm
     picture = tmp_path / "still.svg"
     run.draw(at=4, out=picture)
     assert "8 agents" in picture.read_text()
+    with pytest.raises(sc.Error, match="exists; give force=True"):
+        run.draw(at=4, out=picture)
+    run.draw(at=4, out=picture, force=True)
+    page = tmp_path / "still.html"
+    for force in (False, True):
+        run.save(page, force=force)
     recording = tmp_path / "still.rrd"
     run.save(recording)
     with pytest.raises(sc.Error, match="exists; give force=True"):
