@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 
 const FLOW: Flow = Flow {
     first: 0,
+    waited: 0.0,
     per_sec: 2.5,
     from: 10.0,
     until: 610.0,

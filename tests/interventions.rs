@@ -159,3 +159,33 @@ fn what_is_no_intervention_is_refused_with_its_place() {
         assert!(error.contains(said), "{given}:\n{error}");
     }
 }
+
+#[test]
+fn a_rate_that_is_set_again_and_again_lets_as_many_people_arrive() {
+    // Independent of each other: the mean number and its standard deviation are those of one flow.
+    let arrived = |seed: u64, again: bool| {
+        let all = (1..60)
+            .map(|k| json!({"at_secs": 10 * k, "set_rate": {"entrance": "in", "per_sec": 0.2}}));
+        let document = json!({
+            "seed": seed, "duration_secs": 600, "profile": "sph",
+            "walkable_area": [[[[0, 0], [8, 0], [8, 6], [0, 6]]]],
+            "exits": [{"name": "out", "line": [[8, 1], [8, 5]]}],
+            "entrances": [{"name": "in", "line": [[0, 1], [0, 5]], "per_sec": 0.2, "arrivals": "poisson"}],
+            "interventions": if again { all.collect() } else { Vec::new() },
+            "time_step_secs": 0.05,
+        });
+        f64::from(Summary::of(&driven(&document)).agents)
+    };
+    let [once, again] = [false, true].map(|again| {
+        let all = (1..=20).map(|seed| arrived(seed, again));
+        all.collect::<Vec<f64>>()
+    });
+    // The same rate from other moments on gives the same arrivals, but for rounding.
+    let same = once
+        .iter()
+        .zip(&again)
+        .filter(|(a, b)| (*a - *b).abs() <= 1.0);
+    assert!(same.count() == 20, "{once:?} {again:?}");
+    let mean = again.iter().sum::<f64>() / 20.0;
+    assert!((mean - 120.0).abs() < 10.0, "{mean}");
+}

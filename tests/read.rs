@@ -195,8 +195,8 @@ fn mistakes_are_reported_with_the_line_and_the_fix() {
         (
             "a.csv",
             "\"t\",\"id\",\"x\",\"y\"\n0,1,0,0\n".to_owned(),
-            "a.csv:1: the first line must name the columns id, frame, x and y; here it names a time and no frame: add a \
-             column with the number of the frame",
+            "a.csv:1: the first line must name the columns id, frame, x and y; here it names a time and no frame: \
+             add a column with the number of the frame",
         ),
         (
             "a.csv",

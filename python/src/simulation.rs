@@ -140,7 +140,7 @@ impl Native {
     /// The current number of agents.
     #[getter]
     fn agents(&self) -> usize {
-        self.now().agents.len()
+        self.now().agents.count_present()
     }
 
     #[getter]

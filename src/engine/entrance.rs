@@ -70,9 +70,27 @@ pub struct Flow {
     pub number: Option<u32>,
     /// The number of its first agent: of those that have arrived at this entrance before.
     pub first: u32,
+    /// The part of the waiting time of its first agent, in units of its mean, that was over before `from`: of flows at
+    /// random whose rate has changed.
+    pub waited: f64,
 }
 
 impl Flow {
+    /// Since when the next agent is waited for, seconds, and the part of its waiting time that was over then, in units
+    /// of its mean. `before`: the time of the last arrival.
+    fn start(&self, before: Option<f64>) -> (f64, f64) {
+        match before {
+            Some(before) if before >= self.from => (before, 0.0),
+            _ => (self.from, self.waited),
+        }
+    }
+
+    /// The part of the waiting time of the next agent that is over at `now`, in units of its mean.
+    pub fn waited(&self, before: Option<f64>, now: f64) -> f64 {
+        let (start, waited) = self.start(before);
+        waited + (now - start).max(0.0) * self.per_sec
+    }
+
     fn includes(&self, k: u32, time: f64) -> bool {
         self.per_sec > 0.0 && time < self.until && self.number.is_none_or(|number| k < number)
     }
@@ -98,8 +116,8 @@ impl Arrivals {
             Self::Poisson(flow) => {
                 let mut random = random::stream(seed, Purpose::Arrival, entrance, u64::from(k));
                 let share: f64 = random.sample(Open01);
-                let before = before.map_or(flow.from, |before| before.max(flow.from));
-                let time = before - share.ln() / flow.per_sec;
+                let (start, waited) = flow.start(before);
+                let time = start + (-share.ln() - waited).max(0.0) / flow.per_sec;
                 flow.includes(k, time).then_some(time)
             }
             Self::At(times) => times.get(k as usize).copied(),

@@ -55,6 +55,11 @@ impl Default for Gate {
 }
 
 impl Gate {
+    /// The time of the last arrival, seconds.
+    pub(super) fn last(&self) -> Option<f64> {
+        self.last
+    }
+
     /// The number of agents that have arrived.
     pub(super) fn arrived(&self) -> u32 {
         self.arrived

@@ -271,16 +271,20 @@ impl Crowd {
         let from = self.clock.time();
         let arrivals = &scene.entrances[usize::from(entrance)].arrivals;
         let gate = self.gate(scene, entrance);
-        let (until, number) = match arrivals {
-            Arrivals::Constant(flow) | Arrivals::Poisson(flow) => (flow.until, flow.number),
-            Arrivals::At(_) => (f64::INFINITY, None),
+        let given = match arrivals {
+            Arrivals::Constant(flow) | Arrivals::Poisson(flow) => Some(*flow),
+            Arrivals::At(_) => None,
         };
+        let (until, number) = given.map_or((f64::INFINITY, None), |flow| (flow.until, flow.number));
+        let before = gate.flow.or(given);
+        let waited = before.map_or(0.0, |flow| flow.waited(gate.last(), from));
         gate.flow = Some(Flow {
             per_sec,
             from,
             until,
             number,
             first: gate.arrived(),
+            waited,
         });
     }
 

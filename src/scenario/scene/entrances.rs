@@ -19,6 +19,7 @@ impl Entrance {
                 until: self.until_secs.unwrap_or(f64::INFINITY),
                 number: self.number,
                 first: 0,
+                waited: 0.0,
             },
             (None, Some(times)) => {
                 for (key, is_given) in [
