@@ -125,58 +125,17 @@ impl Simulation {
         }
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
         Ok(Some(match action {
-            Action::Add(new) => {
-                let before = crowd.agents.len();
-                for agent in new {
-                    crowd.enter_with_room(scene, *agent)?;
-                }
-                let entered = before..crowd.agents.len();
-                let walks_to_goal = |&i: &usize| {
-                    let group = &scene.groups[usize::from(crowd.agents.group[i])];
-                    group.journey.is_none() && group.direction.is_none()
-                };
-                let walking = entered.clone().filter(walks_to_goal);
-                let goals = walking
-                    .map(|i| (i, crowd.agents.goal[i]))
-                    .collect::<Vec<_>>();
-                self.map_goals(&goals);
-                in_words(entered.len(), new.len(), "enter")
-            }
+            Action::Add(new) => self.add_agents(new)?,
             Action::Remove(ids) => in_words(crowd.take_out(scene, ids), ids.len(), "are removed"),
-            Action::Goals(goals) => {
-                let found = crowd.find(goals);
-                self.map_goals(&found);
-                let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
-                for &(i, goal) in &found {
-                    crowd.leave_journey(scene, i);
-                    crowd.agents.goal[i] = goal;
-                    crowd.agents.forget_route(i);
-                }
-                in_words(found.len(), goals.len(), "get a new goal")
-            }
+            Action::Goals(goals) => self.give_goals(goals),
             Action::Journey { agents, journey } => {
-                crowd.agents.trip.resize(crowd.agents.len(), None);
-                let found = crowd.find_all(agents);
-                for &i in &found {
-                    crowd.leave_journey(scene, i);
-                    crowd.begin(scene, i, *journey);
-                }
+                let done = crowd.begin_journeys(scene, agents, *journey);
                 let name = &scene.journeys.journeys[usize::from(*journey)].name;
-                in_words(
-                    found.len(),
-                    agents.len(),
-                    &format!("begin the journey {name}"),
-                )
+                in_words(done, agents.len(), &format!("begin the journey {name}"))
             }
             Action::Speeds(speeds) => {
-                let usual = [scene.preferred_speed, scene.max_speed];
-                let found = crowd.find(speeds);
-                for &(i, preferred) in &found {
-                    let own = scene.own_speeds(preferred);
-                    crowd.agents.change_speeds(i, own, usual);
-                }
-                crowd.changed |= !found.is_empty();
-                in_words(found.len(), speeds.len(), "want to walk at another speed")
+                let done = crowd.change_speeds(scene, speeds);
+                in_words(done, speeds.len(), "want to walk at another speed")
             }
             Action::Push(..) => {
                 let p = scene.pushes.len() - 1;
@@ -210,9 +169,61 @@ impl Simulation {
             }
         }))
     }
+
+    fn add_agents(&mut self, new: &[NewAgent]) -> Result<String, Fault> {
+        let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
+        let before = crowd.agents.len();
+        for agent in new {
+            crowd.enter_with_room(scene, *agent)?;
+        }
+        let entered = before..crowd.agents.len();
+        let walks_to_goal = |&i: &usize| {
+            let group = &scene.groups[usize::from(crowd.agents.group[i])];
+            group.journey.is_none() && group.direction.is_none()
+        };
+        let walking = entered.clone().filter(walks_to_goal);
+        let goals: Vec<_> = walking.map(|i| (i, crowd.agents.goal[i])).collect();
+        self.map_goals(&goals);
+        Ok(in_words(entered.len(), new.len(), "enter"))
+    }
+
+    fn give_goals(&mut self, goals: &[(u32, Vector)]) -> String {
+        let found = self.crowd.find(goals);
+        self.map_goals(&found);
+        let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
+        for &(i, goal) in &found {
+            crowd.leave_journey(scene, i);
+            crowd.agents.goal[i] = goal;
+            crowd.agents.forget_route(i);
+        }
+        in_words(found.len(), goals.len(), "get a new goal")
+    }
 }
 
 impl Crowd {
+    /// Agents begin a journey; returns their number.
+    fn begin_journeys(&mut self, scene: &Scene, ids: &[u32], journey: u16) -> usize {
+        self.agents.trip.resize(self.agents.len(), None);
+        let found = self.find_all(ids);
+        for &i in &found {
+            self.leave_journey(scene, i);
+            self.begin(scene, i, journey);
+        }
+        found.len()
+    }
+
+    /// Agents get other preferred speeds, m/s; returns their number.
+    fn change_speeds(&mut self, scene: &Scene, speeds: &[(u32, f64)]) -> usize {
+        let usual = [scene.preferred_speed, scene.max_speed];
+        let found = self.find(speeds);
+        for &(i, preferred) in &found {
+            let own = scene.own_speeds(preferred);
+            self.agents.change_speeds(i, own, usual);
+        }
+        self.changed |= !found.is_empty();
+        found.len()
+    }
+
     /// The indices of those agents that are present, by id, each once, with their values.
     fn find<T: Copy>(&self, values: &[(u32, T)]) -> Vec<(usize, T)> {
         let agents = &self.agents;

@@ -79,26 +79,8 @@ pub fn action(keys: &Keys, scene: &Scene) -> Result<Action, Problem> {
         return Err(Problem::new("", reason));
     }
     let names = Names(scene);
-    if let Some(add) = &keys.add {
-        return added(add, &names).under("add");
-    }
-    if let Some(ids) = &keys.remove {
-        return Ok(Action::Remove(ids.clone()));
-    }
-    if let Some(set) = &keys.set_goal {
-        on_floor("goals", &set.goals, scene).under("set_goal")?;
-        let goals = each(&set.agents, &set.goals);
-        return Ok(Action::Goals(goals.under("set_goal.goals")?));
-    }
-    if let Some(SetJourney { agents, journey }) = &keys.set_journey {
-        return Ok(Action::Journey {
-            agents: agents.clone(),
-            journey: names.journey(journey).under("set_journey.journey")?,
-        });
-    }
-    if let Some(set) = &keys.set_speed {
-        let speeds = each(&set.agents, &set.preferred_speeds);
-        return Ok(Action::Speeds(speeds.under("set_speed.preferred_speeds")?));
+    if let Some(action) = of_people(keys, &names) {
+        return action;
     }
     if let Some(push) = &keys.push {
         return pushed(push).under("push");
@@ -131,6 +113,37 @@ pub fn action(keys: &Keys, scene: &Scene) -> Result<Action, Problem> {
         Some((key, Some(name), change)) => names.changed(name, change).under(key),
         _ => Err(Problem::new("", "says nothing")),
     }
+}
+
+/// The action with people that the keys name, if they do.
+fn of_people(keys: &Keys, names: &Names) -> Option<Result<Action, Problem>> {
+    if let Some(add) = &keys.add {
+        return Some(added(add, names).under("add"));
+    }
+    if let Some(ids) = &keys.remove {
+        return Some(Ok(Action::Remove(ids.clone())));
+    }
+    if let Some(set) = &keys.set_goal {
+        let read = || {
+            on_floor("goals", &set.goals, names.0)?;
+            each(&set.agents, &set.goals).under("goals")
+        };
+        return Some(read().map(Action::Goals).under("set_goal"));
+    }
+    if let Some(SetJourney { agents, journey }) = &keys.set_journey {
+        let number = names.journey(journey).under("set_journey.journey");
+        return Some(number.map(|journey| Action::Journey {
+            agents: agents.clone(),
+            journey,
+        }));
+    }
+    let set = keys.set_speed.as_ref()?;
+    let speeds = each(&set.agents, &set.preferred_speeds);
+    Some(
+        speeds
+            .map(Action::Speeds)
+            .under("set_speed.preferred_speeds"),
+    )
 }
 
 fn added(keys: &Add, names: &Names) -> Result<Action, Problem> {
@@ -346,26 +359,7 @@ fn keys(action: &Action, scene: &Scene) -> Keys {
     let entrance = |number: u16| scene.entrances[usize::from(number)].name.clone();
     let mut keys = Keys::default();
     match action {
-        Action::Add(new) => {
-            let is_still = new.iter().all(|one| one.velocity == Vector::zeros());
-            let is_aimless = new.iter().all(|one| one.goal == one.position);
-            let group = new.first().map_or(0, |one| usize::from(one.group));
-            keys.add = Some(Add {
-                group: scene
-                    .groups
-                    .get(group)
-                    .map_or(String::new(), |one| one.name.clone()),
-                positions: new.iter().map(|one| point(one.position)).collect(),
-                goals: match is_aimless {
-                    true => Vec::new(),
-                    false => new.iter().map(|one| point(one.goal)).collect(),
-                },
-                velocities: match is_still {
-                    true => Vec::new(),
-                    false => new.iter().map(|one| one.velocity.into()).collect(),
-                },
-            });
-        }
+        Action::Add(new) => keys.add = Some(add_of(new, scene)),
         Action::Remove(ids) => keys.remove = Some(ids.clone()),
         Action::Goals(goals) => {
             let (agents, goals) = together(goals);
@@ -437,4 +431,26 @@ fn keys(action: &Action, scene: &Scene) -> Keys {
         }
     }
     keys
+}
+
+/// The keys of people who enter.
+fn add_of(new: &[NewAgent], scene: &Scene) -> Add {
+    let is_still = new.iter().all(|one| one.velocity == Vector::zeros());
+    let is_aimless = new.iter().all(|one| one.goal == one.position);
+    let group = new.first().map_or(0, |one| usize::from(one.group));
+    Add {
+        group: scene
+            .groups
+            .get(group)
+            .map_or(String::new(), |one| one.name.clone()),
+        positions: new.iter().map(|one| point(one.position)).collect(),
+        goals: match is_aimless {
+            true => Vec::new(),
+            false => new.iter().map(|one| point(one.goal)).collect(),
+        },
+        velocities: match is_still {
+            true => Vec::new(),
+            false => new.iter().map(|one| one.velocity.into()).collect(),
+        },
+    }
 }

@@ -115,21 +115,7 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
     reader.get_mut().next_line();
     let names: Vec<&str> = header.iter().collect();
     let head = |problem: String| ReadError::line(path, 1, problem);
-    let has = |known: &[&str]| names.iter().any(|name| known.contains(name));
-    let missing = || {
-        let why = match names[..] {
-            [one] if one.contains(';') => {
-                "; here columns are separated by semicolons: separate them by commas, and write numbers with points"
-            }
-            _ if has(&["t", "time"]) && !has(&["frame"]) => {
-                "; here it names a time and no frame: add a column with the number of the frame"
-            }
-            _ => "",
-        };
-        head(format!(
-            "the first line must name the columns id, frame, x and y{why}"
-        ))
-    };
+    let missing = || head(unnamed(&names));
     let found = Columns::named(&names).map_err(head)?;
     let (columns, unit) = found.ok_or_else(missing)?;
     let mut contents = Contents {
@@ -211,4 +197,19 @@ impl Times {
         let unit = 10_f64.powi(8 - fps.log10().floor() as i32);
         Some(Ok((fps * unit).round() / unit))
     }
+}
+
+/// What the first line of a CSV lacks.
+fn unnamed(names: &[&str]) -> String {
+    let has = |known: &[&str]| names.iter().any(|name| known.contains(name));
+    let why = match names[..] {
+        [one] if one.contains(';') => {
+            "; here columns are separated by semicolons: separate them by commas, and write numbers with points"
+        }
+        _ if has(&["t", "time"]) && !has(&["frame"]) => {
+            "; here it names a time and no frame: add a column with the number of the frame"
+        }
+        _ => "",
+    };
+    format!("the first line must name the columns id, frame, x and y{why}")
 }
