@@ -8,8 +8,8 @@ pub mod contact;
 pub mod drag;
 pub mod goal;
 pub mod legs;
-#[doc(hidden)]
 pub mod model;
+#[doc(hidden)]
 pub mod near;
 pub mod own;
 #[doc(hidden)]

@@ -39,7 +39,7 @@ pub enum Action {
     /// A push begins, with a force if there is one. The times of both, and the index in the force, are set when it
     /// begins.
     Push(Push, Option<PushForce>),
-    /// An exit or a door opens or closes, or a waiting area is released or closed again for those who go on.
+    /// An exit or a door opens or closes, or a waiting area is released.
     Place {
         /// The number of the place.
         place: u16,
