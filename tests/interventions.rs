@@ -123,6 +123,10 @@ fn what_is_no_intervention_is_refused_with_its_place() {
             "interventions[0].set_goal.goals[0]: (1, 50) lies in an obstacle or outside of the walkable area",
         ),
         (
+            json!({"frame": 1, "remove": [4, 1, 4]}),
+            "interventions[0].remove[2]: agent 4 is given twice; remove one",
+        ),
+        (
             json!({"frame": 1, "set_goal": {"agents": [1, 2], "goals": [[1, 5], [2, 5], [3, 5]]}}),
             "interventions[0].set_goal.goals: 3 for 2 agents; give one for all, or one for each",
         ),

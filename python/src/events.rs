@@ -23,6 +23,17 @@ struct Row {
 }
 
 impl Row {
+    /// A row without a place.
+    fn at(id: u32, time: f64, position: Vector) -> Self {
+        Self {
+            id,
+            time,
+            position,
+            place: NONE,
+            direction: 0,
+        }
+    }
+
     /// The bytes of `EVENT` in `_simulation.py`.
     fn bytes(&self) -> [u8; 40] {
         let mut bytes = [0; 40];
@@ -113,25 +124,14 @@ impl Watch {
     ) -> ([Bound<'py, PyBytes>; 4], Vec<u32>) {
         let outcome = run.simulation.outcome();
         let arrivals = outcome.arrivals[self.reported[0]..].iter();
-        let left: Vec<Row> = arrivals
-            .map(|arrival| Row {
-                id: arrival.id,
-                time: arrival.time,
-                position: arrival.position,
-                place: arrival.trip.map_or(NONE, |trip| i32::from(trip.exit)),
-                direction: 0,
-            })
-            .collect();
+        let left = arrivals.map(|arrival| Row {
+            place: arrival.trip.map_or(NONE, |trip| i32::from(trip.exit)),
+            ..Row::at(arrival.id, arrival.time, arrival.position)
+        });
+        let left = left.collect();
         let removals = outcome.removed[self.reported[1]..].iter();
-        let removed: Vec<Row> = removals
-            .map(|removal| Row {
-                id: removal.id,
-                time: removal.time,
-                position: removal.position,
-                place: NONE,
-                direction: 0,
-            })
-            .collect();
+        let removed = removals.map(|one| Row::at(one.id, one.time, one.position));
+        let removed = removed.collect();
         self.reported = counts(&run.simulation);
         let entered = std::mem::take(&mut self.entered);
         let mut crossed = std::mem::take(&mut self.crossed);

@@ -156,7 +156,11 @@ impl Simulation {
             .flatten()
             .copied()
             .collect();
-        let find = |id: u32| {
+        let mut seen = BTreeSet::new();
+        let mut find = |id: u32| {
+            if !seen.insert(id) {
+                return Err(ActionError::Twice(id));
+            }
             let present = places.get(id as usize).copied().flatten();
             let later = id
                 .checked_sub(agents.entered())
@@ -175,7 +179,7 @@ impl Simulation {
             let known = known.filter(|_| !removed.contains(&id));
             known.ok_or_else(|| ActionError::Absent(id, self.absent(id)))
         };
-        ids.map(find).collect()
+        ids.map(&mut find).collect()
     }
 
     fn check_action(&self, action: &Action) -> Result<(), ActionError> {

@@ -72,14 +72,30 @@ impl Interventions {
 
     /// Whether they fit `scene`.
     pub(super) fn fit(&self, scene: &Scene) -> bool {
-        let finite = |action: &Action| match action {
-            Action::Goals(goals) => goals.iter().all(|(_, goal)| is_finite(*goal)),
-            Action::Add(new) => new.iter().all(|new| is_finite(new.position)),
-            _ => true,
-        };
         self.made[0] <= self.from_outside.len()
             && self.made[1] <= scene.interventions.len()
-            && self.from_outside.iter().all(|one| finite(&one.action))
+            && self.from_outside.iter().all(|one| fits(&one.action, scene))
+    }
+}
+
+/// Whether all that an action names is in `scene`, and its points are finite.
+fn fits(action: &Action, scene: &Scene) -> bool {
+    let journeys = &scene.journeys;
+    let has = |number: u16, count: usize| usize::from(number) < count;
+    match action {
+        Action::Goals(goals) => goals.iter().all(|(_, goal)| is_finite(*goal)),
+        Action::Add(new) => new.iter().all(|new| {
+            is_finite(new.position) && is_finite(new.goal) && has(new.group, scene.groups.len())
+        }),
+        Action::Journey { journey, .. } => has(*journey, journeys.journeys.len()),
+        Action::Place { place: number, .. } | Action::Capacity { exit: number, .. } => {
+            has(*number, journeys.places.len())
+        }
+        Action::Entrance { entrance, .. } | Action::Rate { entrance, .. } => {
+            has(*entrance, scene.entrances.len())
+        }
+        Action::Zone { zone, .. } => has(*zone, journeys.zones.len()),
+        Action::Remove(_) | Action::Speeds(_) | Action::Push(..) => true,
     }
 }
 

@@ -32,6 +32,9 @@ pub enum ActionError {
     /// There is no such agent.
     #[error("agent {0}: {1}")]
     Absent(u32, Absent),
+    /// The agent is given twice.
+    #[error("agent {0} is given twice; give each once")]
+    Twice(u32),
     /// The agent's group walks in a direction.
     #[error("agent {0} walks in a direction, not to a point")]
     Directed(u32),

@@ -3,10 +3,10 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use crate::error::ScenarioError;
-use crate::file::Stop;
+use crate::error::{Problem, ScenarioError};
+use crate::file::{Stop, range};
 use crate::floor_plan::Label;
 use crate::input;
 use crate::measurements::Measurement;
@@ -87,13 +87,21 @@ impl Scenario {
         })
     }
 
-    /// The action that an element of the list `interventions` describes, without its time.
+    /// The action that an element of the list `interventions` describes, without its time. The same is refused as in a
+    /// file, so that [`played`](Self::played) can be read.
     ///
     /// # Errors
-    /// A key or a name is unknown, or there is not exactly one action.
+    /// A key or a name is unknown, a number is out of range, or there is not exactly one action.
     pub fn action(&self, keys: &Value) -> Result<Action, ScenarioError> {
-        let read = parsed(keys).and_then(|keys| interventions::action(&keys, &self.scene));
-        read.map_err(|problem| ScenarioError::Invalid {
+        let read = || {
+            range::check(&json!({"interventions": [keys]})).map_err(|problem| {
+                let own = problem.path.strip_prefix("interventions[0]");
+                let own = own.map_or(&*problem.path, |own| own.trim_start_matches('.'));
+                Problem::new(own, problem.reason)
+            })?;
+            interventions::action(&parsed(keys)?, &self.scene)
+        };
+        read().map_err(|problem| ScenarioError::Invalid {
             file: self.name.clone(),
             problem,
         })

@@ -1,5 +1,6 @@
 //! Interventions of a file → those of a scene, and back, for the scenario of a run that was controlled from outside.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use serde_json::Value;
@@ -115,35 +116,51 @@ pub fn action(keys: &Keys, scene: &Scene) -> Result<Action, Problem> {
     }
 }
 
+/// Refuses ids that are given twice.
+fn once(ids: &[u32]) -> Result<(), Problem> {
+    let mut seen = BTreeSet::new();
+    match ids.iter().position(|id| !seen.insert(id)) {
+        None => Ok(()),
+        Some(k) => {
+            let reason = format!("agent {} is given twice; remove one", ids[k]);
+            Err(Problem::new(format!("[{k}]"), reason))
+        }
+    }
+}
+
 /// The action with people that the keys name, if they do.
 fn of_people(keys: &Keys, names: &Names) -> Option<Result<Action, Problem>> {
     if let Some(add) = &keys.add {
         return Some(added(add, names).under("add"));
     }
     if let Some(ids) = &keys.remove {
-        return Some(Ok(Action::Remove(ids.clone())));
+        return Some(
+            once(ids)
+                .under("remove")
+                .map(|()| Action::Remove(ids.clone())),
+        );
     }
     if let Some(set) = &keys.set_goal {
         let read = || {
+            once(&set.agents).under("agents")?;
             on_floor("goals", &set.goals, names.0)?;
             each(&set.agents, &set.goals).under("goals")
         };
         return Some(read().map(Action::Goals).under("set_goal"));
     }
     if let Some(SetJourney { agents, journey }) = &keys.set_journey {
-        let number = names.journey(journey).under("set_journey.journey");
-        return Some(number.map(|journey| Action::Journey {
+        let read = once(agents).under("agents");
+        let number = read.and_then(|()| names.journey(journey).under("journey"));
+        return Some(number.under("set_journey").map(|journey| Action::Journey {
             agents: agents.clone(),
             journey,
         }));
     }
     let set = keys.set_speed.as_ref()?;
-    let speeds = each(&set.agents, &set.preferred_speeds);
-    Some(
-        speeds
-            .map(Action::Speeds)
-            .under("set_speed.preferred_speeds"),
-    )
+    let read = once(&set.agents).under("agents");
+    let speeds =
+        read.and_then(|()| each(&set.agents, &set.preferred_speeds).under("preferred_speeds"));
+    Some(speeds.map(Action::Speeds).under("set_speed"))
 }
 
 fn added(keys: &Add, names: &Names) -> Result<Action, Problem> {
