@@ -84,7 +84,9 @@ class Control:
 
     def remove(self, ids: Any) -> None:
         """Takes people out, by id. They do not count as arrived."""
-        self._do("remove", _ids(ids))
+        numbers = _ids(ids)
+        if numbers:
+            self._do("remove", numbers)
 
     def set_goal(self, ids: Any, goal: Any) -> None:
         """Gives people, by id, a new goal, to which they walk from the next frame on, around walls.
@@ -93,7 +95,7 @@ class Control:
         (len(ids), 2)), m. A person on a journey leaves it, and stays at its goal. Others leave the simulation at their
         goal if their group does (`remove_within`).
 
-        Raises `Error` if someone is not present, or a goal is not on the floor or cannot be reached; nobody has a new
+        Raises `Error` if an id is not present, or a goal is not on the floor or cannot be reached. No one gets a new
         goal then.
         """
         numbers = _ids(ids)
@@ -104,7 +106,9 @@ class Control:
 
     def set_journey(self, ids: Any, journey: str) -> None:
         """People, by id, begin a journey of the scenario, by name, from its first stage on."""
-        self._do("set_journey", {"agents": _ids(ids), "journey": journey})
+        numbers = _ids(ids)
+        if numbers:
+            self._do("set_journey", {"agents": numbers, "journey": journey})
 
     def set_speed(self, ids: Any, speed: Any) -> None:
         """Gives people, by id, another preferred speed, m/s: a number, or one for each. The largest speed at which they
@@ -115,6 +119,8 @@ class Control:
         speeds = numpy.asarray(speed, dtype="float64")
         if speeds.shape not in ((), (len(numbers),)):
             raise Error(f"speed: a number, or one for each of {len(numbers)} agents, not an array of shape {speeds.shape}")
+        if not numbers:
+            return
         self._do("set_speed", {"agents": numbers, "preferred_speeds": numpy.atleast_1d(speeds).tolist()})
 
     def push(
@@ -155,7 +161,7 @@ class Control:
         self._do("close", name)
 
     def release(self, name: str) -> None:
-        """From now on, nobody waits in a waiting area, by name."""
+        """Ends all waiting in a waiting area, by name, from now on."""
         self._do("release", name)
 
     def set_capacity(self, exit: str, most_per_sec: float | None) -> None:

@@ -166,6 +166,14 @@ def test_what_is_not_possible_is_an_error_and_changes_nothing(hall, what, messag
     assert "interventions" not in hall.scenario()
 
 
+def test_no_ids_do_nothing(hall):
+    for act in (hall.remove, lambda ids: hall.set_speed(ids, 1), lambda ids: hall.set_goal(ids, [1, 1])):
+        act([])
+    hall.set_journey([], "wait")
+    assert hall.add(numpy.empty((0, 2)), "people").ids.size == 0
+    assert "interventions" not in hall.scenario()
+
+
 def played(simulation):
     """Some of everything."""
     simulation.step(7)
