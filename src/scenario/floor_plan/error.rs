@@ -63,6 +63,18 @@ pub enum FloorPlanError {
     },
 }
 
+impl FloorPlanError {
+    /// A geometry of the type `found` where only polygons and lines make sense.
+    pub(super) fn no_area(place: &str, found: &str) -> Self {
+        Self::Geometry {
+            place: place.to_owned(),
+            reason: format!(
+                "a {found} has no area; a floor plan consists of polygons, and of lines that are walls"
+            ),
+        }
+    }
+}
+
 /// A place as the prefix of a message; empty if there is none.
 fn at(place: &str) -> String {
     match place {

@@ -7,14 +7,12 @@ use geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
 use serde_json::Value;
 
 use super::error::FloorPlanError;
-use super::shape::{Geometry as Parts, Shape, part};
+use super::kind::Kind;
+use super::shape::{Form, Geometry as Parts, Shape, part};
 use super::wkt::IN_DEGREES;
 
 /// The property that says what a feature is. Without it, a feature is floor.
 const KIND: &str = "kind";
-/// Its values, in any case.
-const FLOOR: &str = "floor";
-const OBSTACLE: &str = "obstacle";
 /// The property with the name of a feature.
 const NAME: &str = "name";
 
@@ -28,12 +26,9 @@ pub fn shapes(text: &str, all_obstacles: bool) -> Result<Vec<Shape>, FloorPlanEr
     }
     refuse_degrees(&document)?;
     let mut shapes = Vec::new();
-    let mut add = |one: &Feature, place: &str| {
-        let is_obstacle = all_obstacles || is_obstacle(one, place)?;
-        feature(one, place, is_obstacle, &mut shapes)
-    };
+    let mut add = |one: &Feature, place: &str| feature(one, place, all_obstacles, &mut shapes);
     match serde_json::from_value(document).map_err(|error| syntax(&error))? {
-        GeoJson::Geometry(geometry) => collect(&geometry, "", all_obstacles, &mut shapes)?,
+        GeoJson::Geometry(geometry) => add(&Feature::from(geometry), "")?,
         GeoJson::Feature(one) => add(&one, "")?,
         GeoJson::FeatureCollection(collection) => {
             for (k, one) in collection.features.iter().enumerate() {
@@ -77,108 +72,142 @@ fn named(feature: &Feature, k: usize) -> String {
     }
 }
 
-/// Is this feature an obstacle? An unknown kind is an error, so that no misspelled obstacle becomes floor.
-fn is_obstacle(feature: &Feature, place: &str) -> Result<bool, FloorPlanError> {
+/// What a feature is, by its property `kind`; `None` without one. An unknown kind is an error, so that no misspelled
+/// obstacle becomes floor.
+fn kind(feature: &Feature, place: &str) -> Result<Option<Kind>, FloorPlanError> {
     let Some(properties) = &feature.properties else {
-        return Ok(false);
+        return Ok(None);
     };
     let wrong = |reason: String| FloorPlanError::Geometry {
         place: place.to_owned(),
         reason,
     };
-    let says = |value: &Value, kind: &str| {
-        let text = value.as_str().map(str::trim);
-        text.is_some_and(|text| text.eq_ignore_ascii_case(kind))
+    let Some(given) = properties.get(KIND).filter(|kind| !kind.is_null()) else {
+        let is_obstacle =
+            |value: &Value| value.as_str().and_then(Kind::of_word) == Some(Kind::Obstacle);
+        let mut others = properties.iter().filter(|(key, _)| *key != NAME);
+        return match others.find(|(_, value)| is_obstacle(value)) {
+            None => Ok(None),
+            Some((key, value)) => Err(wrong(format!(
+                "the property `{}` is `{}`, but only `{KIND}` says what a feature is; rename it",
+                shown(key),
+                shown(value.as_str().unwrap_or_default())
+            ))),
+        };
     };
-    match properties.get(KIND).filter(|kind| !kind.is_null()) {
+    let word = given.as_str().map_or(given.to_string(), str::to_owned);
+    match Kind::of_word(&word) {
+        _ if word.trim().is_empty() => Ok(None),
+        Some(kind) => Ok(Some(kind)),
         None => {
-            let mut others = properties.iter().filter(|(key, _)| *key != NAME);
-            match others.find(|(_, value)| says(value, OBSTACLE)) {
-                None => Ok(false),
-                Some((key, _)) => Err(wrong(format!(
-                    "the property `{}` is `{OBSTACLE}`, but only `{KIND}` says what a feature is; rename it",
-                    shown(key)
-                ))),
-            }
-        }
-        Some(kind) if says(kind, OBSTACLE) => Ok(true),
-        Some(kind) if says(kind, FLOOR) || says(kind, "") => Ok(false),
-        Some(kind) => {
-            let given = kind.as_str().map_or(kind.to_string(), str::to_owned);
-            let near = suggestion(&given.to_lowercase(), [FLOOR, OBSTACLE]);
+            let near = suggestion(&word.to_lowercase(), Kind::words());
             let near = match near.as_str() {
-                "" => format!("; write `{OBSTACLE}` or `{FLOOR}`"),
+                "" => format!("; write {}", listed(Kind::words())),
                 near => near.to_owned(),
             };
-            Err(wrong(format!(
-                "{KIND} `{}` is unknown{near}",
-                shown(&given)
-            )))
+            Err(wrong(format!("{KIND} `{}` is unknown{near}", shown(&word))))
         }
     }
 }
 
+/// Words as a list with `or`.
+fn listed(words: impl Iterator<Item = &'static str>) -> String {
+    let quoted: Vec<String> = words.map(|word| format!("`{word}`")).collect();
+    match quoted.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => quoted.concat(),
+    }
+}
+
+/// Adds the parts of a feature. All polygons and lines are obstacles if `all_obstacles`.
 fn feature(
     feature: &Feature,
     place: &str,
-    is_obstacle: bool,
+    all_obstacles: bool,
     shapes: &mut Vec<Shape>,
 ) -> Result<(), FloorPlanError> {
-    match &feature.geometry {
-        Some(geometry) => {
-            let first = shapes.len();
-            collect(geometry, place, is_obstacle, shapes)?;
-            // Of several polygons, the largest has the name.
-            let parts = shapes[first..].iter_mut();
-            let largest = parts.max_by(|a, b| a.extent().total_cmp(&b.extent()));
-            if let Some(largest) = largest {
-                largest.name = name(feature).map(str::to_owned);
+    let Some(geometry) = &feature.geometry else {
+        return Err(FloorPlanError::EmptyGeometry(place.to_owned()));
+    };
+    let given = if all_obstacles {
+        Some(Kind::Obstacle)
+    } else {
+        kind(feature, place)?
+    };
+    let first = shapes.len();
+    parts(geometry, place)?.shapes(place, given.unwrap_or_default(), shapes)?;
+    let own = name(feature);
+    for shape in &mut shapes[first..] {
+        shape.kind = match (given, shape.form) {
+            (Some(Kind::Floor), Form::Line) => {
+                return Err(FloorPlanError::no_area(&shape.place, "LineString"));
             }
-            Ok(())
-        }
-        None => Err(FloorPlanError::EmptyGeometry(place.to_owned())),
+            (Some(Kind::Obstacle), Form::Line) | (None, Form::Line) => Kind::Wall,
+            (None, Form::Point) if own.is_some() => Kind::Place,
+            (None, Form::Point)
+            | (Some(Kind::Floor | Kind::Obstacle | Kind::Wall), Form::Point) => {
+                return Err(FloorPlanError::no_area(&shape.place, "Point"));
+            }
+            (Some(Kind::Wall), Form::Area) => Kind::Obstacle,
+            (kind, _) => kind.unwrap_or_default(),
+        };
     }
-}
-
-fn collect(
-    geometry: &Geometry,
-    place: &str,
-    is_obstacle: bool,
-    shapes: &mut Vec<Shape>,
-) -> Result<(), FloorPlanError> {
-    parts(geometry).polygons(place, &mut |polygon, place| {
-        let rings = rings(polygon, &place)?;
-        shapes.push(Shape::new(place, rings, is_obstacle));
-        Ok(())
-    })
-}
-
-fn parts(geometry: &Geometry) -> Parts<&[Vec<Position>]> {
-    match &geometry.value {
-        GeometryValue::Polygon { coordinates } => Parts::Polygon(coordinates),
-        GeometryValue::MultiPolygon { coordinates } => {
-            let polygons = coordinates.iter().map(Vec::as_slice).map(Parts::Polygon);
-            Parts::Several("polygon", polygons.collect())
-        }
-        GeometryValue::GeometryCollection { geometries } => {
-            Parts::Several("geometry", geometries.iter().map(parts).collect())
-        }
-        other => Parts::Other(other.type_name()),
+    // Of several polygons, the largest has the name.
+    let parts = shapes[first..].iter_mut();
+    let largest = parts.max_by(|a, b| a.extent().total_cmp(&b.extent()));
+    if let Some(largest) = largest {
+        largest.name = own.map(str::to_owned);
     }
+    Ok(())
 }
 
-/// The rings of a polygon, meters.
-fn rings(rings: &[Vec<Position>], place: &str) -> Result<Vec<Vec<[f64; 2]>>, FloorPlanError> {
-    let point = |r: usize, k: usize, position: &Position| match position.as_slice() {
+/// The parts of a geometry, meters.
+fn parts(geometry: &Geometry, place: &str) -> Result<Parts, FloorPlanError> {
+    let point = |place: &str, k: usize, position: &Position| match position.as_slice() {
         [x, y, ..] => Ok([*x, *y]),
         few => Err(FloorPlanError::Geometry {
-            place: part(&part(place, "ring", r), "position", k),
+            place: part(place, "position", k),
             reason: format!("has {} number(s); write [x, y]", few.len()),
         }),
     };
-    let ring = |(r, ring): (usize, &Vec<Position>)| {
-        let positions = ring.iter().enumerate();
-        positions.map(|(k, one)| point(r, k, one)).collect()
+    let line = |positions: &[Position], place: &str| {
+        let positions = positions.iter().enumerate();
+        positions
+            .map(|(k, one)| point(place, k, one))
+            .collect::<Result<Vec<_>, _>>()
     };
-    rings.iter().enumerate().map(ring).collect()
+    let area = |rings: &[Vec<Position>], place: &str| {
+        let rings = rings.iter().enumerate();
+        let rings = rings.map(|(r, ring)| line(ring, &part(place, "ring", r)));
+        rings.collect::<Result<_, _>>().map(Parts::Area)
+    };
+    let several = |word: &'static str, parts: Vec<Result<Parts, FloorPlanError>>| {
+        let parts = parts.into_iter().collect::<Result<_, _>>()?;
+        Ok(Parts::Several(word, parts))
+    };
+    match &geometry.value {
+        GeometryValue::Polygon { coordinates } => area(coordinates, place),
+        GeometryValue::LineString { coordinates } => line(coordinates, place).map(Parts::Line),
+        GeometryValue::Point { coordinates } => point(place, 0, coordinates).map(Parts::Point),
+        GeometryValue::MultiPolygon { coordinates } => {
+            let polygons = coordinates.iter().enumerate();
+            let polygons = polygons.map(|(k, one)| area(one, &part(place, "polygon", k)));
+            several("polygon", polygons.collect())
+        }
+        GeometryValue::MultiLineString { coordinates } => {
+            let lines = coordinates.iter().enumerate();
+            let lines = lines.map(|(k, one)| Ok(Parts::Line(line(one, &part(place, "line", k))?)));
+            several("line", lines.collect())
+        }
+        GeometryValue::MultiPoint { coordinates } => {
+            let points = coordinates.iter().enumerate();
+            let points = points.map(|(k, one)| Ok(Parts::Point(point(place, k, one)?)));
+            several("point", points.collect())
+        }
+        GeometryValue::GeometryCollection { geometries } => {
+            let geometries = geometries.iter().enumerate();
+            let geometries = geometries.map(|(k, one)| parts(one, &part(place, "geometry", k)));
+            several("geometry", geometries.collect())
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! Polygons without effect: obstacles and holes off the floor, and floors inside other floors.
 
 use super::error::FloorPlanError;
+use super::kind::Kind;
 use super::shape::{SAME, Shape, part};
 use super::unite::{free, rings};
 use crate::error::quote::shown;
@@ -67,7 +68,7 @@ pub fn notes(shapes: &[Shape]) -> Result<Vec<String>, FloorPlanError> {
     }
     let boxed = shapes.iter().map(Boxed::new);
     let (obstacles, floors): (Vec<Boxed>, Vec<Boxed>) =
-        boxed.partition(|polygon| polygon.shape.is_obstacle);
+        boxed.partition(|polygon| polygon.shape.kind == Kind::Obstacle);
     let mut notes = Vec::new();
     if floors.is_empty() {
         return Ok(notes);
@@ -141,7 +142,11 @@ fn holes_off(floors: &[Boxed]) -> Result<Vec<String>, FloorPlanError> {
 
 /// Ring `k` of a floor as a floor of its own.
 fn outline(shape: &Shape, k: usize) -> Shape {
-    Shape::new(shape.place.clone(), vec![shape.rings[k].clone()], false)
+    Shape::new(
+        shape.place.clone(),
+        vec![shape.rings[k].clone()],
+        Kind::Floor,
+    )
 }
 
 /// The first place, and the number of the others.

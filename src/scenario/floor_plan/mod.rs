@@ -17,7 +17,9 @@ mod boundary;
 mod error;
 mod geojson;
 mod idle;
+mod kind;
 mod on_floor;
+mod reading;
 mod shape;
 mod unite;
 mod wkt;
@@ -25,7 +27,9 @@ mod xml;
 
 pub use error::FloorPlanError;
 pub(crate) use idle::notes as without_effect;
+pub use kind::Kind;
 pub use on_floor::{is_line_on_floor, is_on_floor, parts_on_floor};
+pub use reading::Reading;
 pub use shape::Label;
 pub(crate) use shape::Shape;
 pub use unite::{Rings, free, outlines, rings};
@@ -80,7 +84,7 @@ pub fn read_obstacles(path: &Path) -> Result<FloorPlan, FloorPlanError> {
     in_file(path, |text| {
         let mut shapes = shapes(text, true)?;
         for shape in &mut shapes {
-            shape.is_obstacle = true;
+            shape.kind = Kind::Obstacle;
         }
         FloorPlan::of(&shapes)
     })
@@ -139,7 +143,8 @@ impl FloorPlan {
     /// Those of [`read`]; places count from 0.
     pub fn walkable(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Self, FloorPlanError> {
         let numbered = polygons.iter().enumerate();
-        let shapes = numbered.map(|(k, rings)| Shape::new(format!("[{k}]"), rings.clone(), false));
+        let shapes =
+            numbered.map(|(k, rings)| Shape::new(format!("[{k}]"), rings.clone(), Kind::Floor));
         Self::of(&shapes.collect::<Vec<_>>())
     }
 
@@ -148,7 +153,7 @@ impl FloorPlan {
     /// # Errors
     /// Those of [`Ring::new`](engine::geometry::Ring::new) and [`Polygon::filling`], with coordinates.
     pub fn obstacle(rings: &[Vec<[f64; 2]>]) -> Result<Area, FloorPlanError> {
-        let shape = Shape::new(String::new(), rings.to_vec(), true);
+        let shape = Shape::new(String::new(), rings.to_vec(), Kind::Obstacle);
         shape.area().cloned()
     }
 
@@ -184,7 +189,7 @@ impl FloorPlan {
         for shape in shapes {
             let area = shape.area()?;
             names.extend(shape.label(area));
-            if shape.is_obstacle {
+            if shape.kind == Kind::Obstacle {
                 obstacles.push(area.clone());
             } else {
                 walkable.push(area.clone());

@@ -3,6 +3,7 @@
 use std::cell::OnceCell;
 
 use super::error::FloorPlanError;
+use super::kind::Kind;
 use engine::geometry::{Area, Polygon, PolygonError, Ring};
 use engine::math::{Vector, bounds};
 
@@ -22,52 +23,85 @@ pub struct Label {
     pub width: Option<f64>,
 }
 
-/// A polygon of a file.
+/// The form of a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Form {
+    /// A polygon.
+    #[default]
+    Area,
+    /// A line through several points.
+    Line,
+    /// A point.
+    Point,
+}
+
+/// A geometry of a file, with what it is.
 #[derive(Debug, Clone, Default)]
 pub struct Shape {
     /// Its name in messages.
     pub place: String,
     /// Its own name in the file.
     pub name: Option<String>,
-    /// The outline, then the holes, meters.
+    /// What it is.
+    pub kind: Kind,
+    /// Its form.
+    pub form: Form,
+    /// Of an area, the outline, then the holes; of a line, its points; of a point, that point. Meters.
     pub rings: Vec<Vec<[f64; 2]>>,
-    /// Whether it is an obstacle, not walkable area.
-    pub is_obstacle: bool,
     /// Its [`area`](Self::area), once it has been asked for: the polygon does not change afterwards.
     pub checked: OnceCell<Result<Area, FloorPlanError>>,
 }
 
 /// A geometry of a file.
-pub enum Geometry<P> {
-    /// A polygon, as its format has it.
-    Polygon(P),
+pub enum Geometry {
+    /// The outline, then the holes.
+    Area(Vec<Vec<[f64; 2]>>),
+    /// The points of a line.
+    Line(Vec<[f64; 2]>),
+    /// A point.
+    Point([f64; 2]),
     /// Several geometries, and the word for one of them.
     Several(&'static str, Vec<Self>),
-    /// A geometry without area: the name of its type.
-    Other(&'static str),
 }
 
-impl<P> Geometry<P> {
-    /// Passes each polygon to `take`, with its place.
-    pub fn polygons(
+impl Geometry {
+    /// Adds its parts to `shapes`, each with its place and kind. Parts without points are left out, if there are others.
+    ///
+    /// # Errors
+    /// No part has points.
+    pub fn shapes(
         self,
         place: &str,
-        take: &mut dyn FnMut(P, String) -> Result<(), FloorPlanError>,
+        kind: Kind,
+        shapes: &mut Vec<Shape>,
     ) -> Result<(), FloorPlanError> {
-        match self {
-            Self::Polygon(polygon) => take(polygon, place.to_owned()),
-            Self::Several(_, parts) if parts.is_empty() => {
-                Err(FloorPlanError::EmptyGeometry(place.to_owned()))
-            }
-            Self::Several(kind, parts) => {
-                let mut parts = parts.into_iter().enumerate();
-                parts.try_for_each(|(k, one)| one.polygons(&part(place, kind, k), take))
-            }
-            Self::Other(found) => Err(FloorPlanError::Geometry {
-                place: place.to_owned(),
-                reason: format!("a {found} has no area; a floor plan consists of polygons"),
-            }),
+        let first = shapes.len();
+        self.collect(place, kind, shapes);
+        match shapes.len() == first {
+            true => Err(FloorPlanError::EmptyGeometry(place.to_owned())),
+            false => Ok(()),
         }
+    }
+
+    fn collect(self, place: &str, kind: Kind, shapes: &mut Vec<Shape>) {
+        let place = place.to_owned();
+        let shape = match self {
+            Self::Several(word, parts) => {
+                for (k, one) in parts.into_iter().enumerate() {
+                    one.collect(&part(&place, word, k), kind, shapes);
+                }
+                return;
+            }
+            Self::Area(rings) if rings.iter().all(Vec::is_empty) => return,
+            Self::Line(points) if points.is_empty() => return,
+            Self::Area(rings) => Shape::new(place, rings, kind),
+            Self::Line(points) => Shape::line(place, points, kind),
+            Self::Point(point) => Shape {
+                form: Form::Point,
+                ..Shape::new(place, vec![vec![point]], kind)
+            },
+        };
+        shapes.push(shape);
     }
 }
 
@@ -79,12 +113,20 @@ pub fn part(place: &str, kind: &str, k: usize) -> String {
 
 impl Shape {
     /// A polygon without a name of its own.
-    pub fn new(place: String, rings: Vec<Vec<[f64; 2]>>, is_obstacle: bool) -> Self {
+    pub fn new(place: String, rings: Vec<Vec<[f64; 2]>>, kind: Kind) -> Self {
         Self {
             place,
+            kind,
             rings,
-            is_obstacle,
             ..Self::default()
+        }
+    }
+
+    /// A line without a name of its own.
+    pub fn line(place: String, points: Vec<[f64; 2]>, kind: Kind) -> Self {
+        Self {
+            form: Form::Line,
+            ..Self::new(place, vec![points], kind)
         }
     }
 
@@ -120,7 +162,7 @@ impl Shape {
             exterior,
             holes: rings.collect(),
         };
-        if self.is_obstacle {
+        if self.kind == Kind::Obstacle {
             // Holes of walkable areas are subtracted, wherever they are.
             Polygon::filling(area.clone()).map_err(|error| self.wrong(&error.to_string()))?;
         }

@@ -3,10 +3,11 @@
 use std::str::FromStr;
 
 use wkt::Wkt;
-use wkt::types::{Coord, Dimension, LineString, MultiPolygon, Polygon};
+use wkt::types::{Coord, Dimension, LineString, MultiPolygon, Point, Polygon};
 
 use super::error::FloorPlanError;
-use super::shape::{Geometry, Shape};
+use super::kind::Kind;
+use super::shape::{Form, Geometry, Shape};
 use engine::geometry::Area;
 use engine::math::Vector;
 
@@ -33,10 +34,15 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
             true => format!("line {line}"),
             false => String::new(),
         };
-        geometry(&wkt).polygons(&place, &mut |polygon, place| {
-            shapes.push(shape(polygon, place));
-            Ok(())
-        })?;
+        let first = shapes.len();
+        geometry(&wkt).shapes(&place, Kind::Floor, &mut shapes)?;
+        for shape in &mut shapes[first..] {
+            match shape.form {
+                Form::Area => {}
+                Form::Line => shape.kind = Kind::Wall,
+                Form::Point => return Err(FloorPlanError::no_area(&shape.place, "POINT")),
+            }
+        }
     }
     Ok(shapes)
 }
@@ -121,28 +127,33 @@ fn without_srid(piece: &str) -> Result<&str, FloorPlanError> {
     Ok(geometry.trim())
 }
 
-fn geometry(wkt: &Wkt<f64>) -> Geometry<&Polygon<f64>> {
-    match wkt {
-        Wkt::Polygon(polygon) => Geometry::Polygon(polygon),
-        Wkt::MultiPolygon(several) => {
-            let polygons = several.polygons().iter();
-            Geometry::Several("polygon", polygons.map(Geometry::Polygon).collect())
+fn geometry(wkt: &Wkt<f64>) -> Geometry {
+    let points = |line: &LineString<f64>| line.coords().iter().map(|c| [c.x, c.y]).collect();
+    let area =
+        |polygon: &Polygon<f64>| Geometry::Area(polygon.rings().iter().map(points).collect());
+    let point = |point: &Point<f64>| {
+        let coordinates = point.coord().map(|c| Geometry::Point([c.x, c.y]));
+        coordinates.unwrap_or(Geometry::Line(Vec::new()))
+    };
+    let (kind, parts): (_, Vec<Geometry>) = match wkt {
+        Wkt::Polygon(polygon) => return area(polygon),
+        Wkt::LineString(line) => return Geometry::Line(points(line)),
+        Wkt::Point(one) => return point(one),
+        Wkt::MultiPolygon(several) => ("polygon", several.polygons().iter().map(area).collect()),
+        Wkt::MultiLineString(several) => {
+            let lines = several.line_strings().iter();
+            (
+                "line",
+                lines.map(|line| Geometry::Line(points(line))).collect(),
+            )
         }
-        Wkt::GeometryCollection(collection) => {
-            let geometries = collection.geometries().iter();
-            Geometry::Several("geometry", geometries.map(geometry).collect())
-        }
-        Wkt::Point(_) => Geometry::Other("POINT"),
-        Wkt::LineString(_) => Geometry::Other("LINESTRING"),
-        Wkt::MultiPoint(_) => Geometry::Other("MULTIPOINT"),
-        Wkt::MultiLineString(_) => Geometry::Other("MULTILINESTRING"),
-    }
-}
-
-fn shape(polygon: &Polygon<f64>, place: String) -> Shape {
-    let points = |ring: &LineString<f64>| ring.coords().iter().map(|c| [c.x, c.y]).collect();
-    let rings = polygon.rings().iter().map(points).collect();
-    Shape::new(place, rings, false)
+        Wkt::MultiPoint(several) => ("point", several.points().iter().map(point).collect()),
+        Wkt::GeometryCollection(collection) => (
+            "geometry",
+            collection.geometries().iter().map(geometry).collect(),
+        ),
+    };
+    Geometry::Several(kind, parts)
 }
 
 /// Areas as a `POLYGON`, or as a `MULTIPOLYGON` unless there is exactly one; holes are clockwise.

@@ -6,6 +6,7 @@
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::error::FloorPlanError;
+use super::kind::Kind;
 use super::shape::Shape;
 
 /// The most nodes of a document.
@@ -47,7 +48,7 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
             let rings = vec![outline(walls, own, &place)?];
             shapes.push(Shape {
                 name: caption(room),
-                ..Shape::new(place.clone(), rings, false)
+                ..Shape::new(place.clone(), rings, Kind::Floor)
             });
             for obstacle in elements(subroom, "obstacle") {
                 for polygon in elements(obstacle, "polygon") {
@@ -55,7 +56,7 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
                     let rings = vec![vertices(polygon, &place, meters)?];
                     shapes.push(Shape {
                         name: caption(obstacle),
-                        ..Shape::new(place, rings, true)
+                        ..Shape::new(place, rings, Kind::Obstacle)
                     });
                 }
             }

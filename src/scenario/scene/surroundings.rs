@@ -3,7 +3,7 @@
 use crate::error::{Problem, Under};
 use crate::file::File;
 use crate::floor_plan;
-use crate::floor_plan::{FloorPlan, Shape};
+use crate::floor_plan::{FloorPlan, Kind, Shape};
 use crate::keys::shapes::{Outline, Point, Ring as GivenRing};
 use crate::scene::openings::{BEHIND, Door, OVERLAP, Opening, WIDE_AT, openings};
 use crate::scene::periodic;
@@ -36,11 +36,11 @@ pub fn without_effect(file: &File) -> Result<Vec<String>, Problem> {
     let mut shapes = Vec::new();
     for (k, given) in file.walkable_area.iter().flatten().enumerate() {
         let place = format!("{WALKABLE_AREA}[{k}]");
-        shapes.push(Shape::new(place, rings(given)?, false));
+        shapes.push(Shape::new(place, rings(given)?, Kind::Floor));
     }
     for (k, given) in file.obstacles.iter().enumerate() {
         let place = format!("{OBSTACLES}[{k}]");
-        shapes.push(Shape::new(place, rings(given.rings())?, true));
+        shapes.push(Shape::new(place, rings(given.rings())?, Kind::Obstacle));
     }
     Ok(floor_plan::without_effect(&shapes)?)
 }
