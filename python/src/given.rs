@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use sandbox::lab::machine::main_memory;
 use sandbox::runs::case::Source;
-use sandbox::scenario::{Draft, Scenario, Setting, floor_plan, in_units};
+use sandbox::scenario::{Draft, Scenario, Setting, in_units};
 
 use crate::error;
 
@@ -30,14 +30,10 @@ impl Given {
             Some(text) => (text, self.name),
             None => Source::named(&self.name).text().map_err(error)?,
         };
-        let (mut settings, mut notes) = (Vec::new(), Vec::new());
+        let mut settings = Vec::new();
         if let Some(path) = &self.geometry {
-            let plan = floor_plan::read(path);
-            let plan = plan.map_err(|reason| error(format!("geometry {reason}")))?;
             let name = format!("geometry={}", path.display());
-            settings.extend(Setting::floor_plan(&plan, &name));
-            let read = plan.notes.iter();
-            notes.extend(read.map(|note| format!("{name}: {note}")));
+            settings.extend(Setting::plan_file(path, &name));
         }
         for (key, value, name) in self.settings {
             let value = serde_json::from_str(&value).map_err(error)?;
@@ -51,8 +47,7 @@ impl Given {
             settings.push(new);
         }
         let draft = Draft::read(&text, &file, &settings).map_err(error)?;
-        let (mut scenario, _) = draft.within(main_memory(), 0).map_err(error)?;
-        scenario.notes.extend(notes);
+        let (scenario, _) = draft.within(main_memory(), 0).map_err(error)?;
         Ok(scenario)
     }
 }

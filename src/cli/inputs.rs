@@ -87,8 +87,7 @@ pub fn settings(
     if let Some(path) = &scene.geometry {
         let text = format!("--geometry {}", path.display());
         outputs.reads("--geometry", path);
-        let plan = floor_plan(path)?;
-        settings.extend(Setting::floor_plan(&plan, &text));
+        settings.extend(Setting::plan_file(path, &text));
     }
     settings.extend(typed.into_iter().chain(last));
     Ok(settings)

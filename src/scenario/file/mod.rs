@@ -13,6 +13,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
+use crate::floor_plan::Reading;
 use crate::keys::catalog::Parameters;
 use crate::keys::curve::Curve;
 use crate::keys::from::FromData;
@@ -129,6 +130,8 @@ pub struct File {
     /// holes), or the name of a WKT, GeoJSON or JuPedSim XML file. Everything around it is solid. Default: everywhere.
     #[schemars(schema_with = "walkable_area")]
     pub walkable_area: Option<Vec<Vec<Ring>>>,
+    /// How the files of `walkable_area` and `obstacles` are read: what they do not say themselves.
+    pub plan: Option<Reading>,
     /// Solid bodies, corners in meters, in either orientation: a list of polygons, each a list of corners or of rings
     /// (the outline, then the holes), or the name of a WKT, GeoJSON or JuPedSim XML file.
     #[schemars(schema_with = "obstacles")]

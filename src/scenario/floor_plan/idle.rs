@@ -2,7 +2,7 @@
 
 use super::error::FloorPlanError;
 use super::kind::Kind;
-use super::shape::{SAME, Shape, part};
+use super::shape::{Form, SAME, Shape, part};
 use super::unite::{free, rings};
 use crate::error::quote::shown;
 use engine::geometry::{Area, Ring};
@@ -66,7 +66,10 @@ pub fn notes(shapes: &[Shape]) -> Result<Vec<String>, FloorPlanError> {
     if shapes.len() > MOST {
         return Ok(Vec::new());
     }
-    let boxed = shapes.iter().map(Boxed::new);
+    let areas = shapes.iter().filter(|shape| shape.form == Form::Area);
+    let boxed = areas
+        .filter(|shape| matches!(shape.kind, Kind::Floor | Kind::Obstacle))
+        .map(Boxed::new);
     let (obstacles, floors): (Vec<Boxed>, Vec<Boxed>) =
         boxed.partition(|polygon| polygon.shape.kind == Kind::Obstacle);
     let mut notes = Vec::new();

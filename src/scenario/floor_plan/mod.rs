@@ -19,8 +19,10 @@ mod geojson;
 mod idle;
 mod kind;
 mod on_floor;
+mod places;
 mod reading;
 mod shape;
+mod thin;
 mod unite;
 mod wkt;
 mod xml;
@@ -29,7 +31,9 @@ pub use error::FloorPlanError;
 pub(crate) use idle::notes as without_effect;
 pub use kind::Kind;
 pub use on_floor::{is_line_on_floor, is_on_floor, parts_on_floor};
+pub use places::{Place, across};
 pub use reading::Reading;
+pub use shape::Form;
 pub use shape::Label;
 pub(crate) use shape::Shape;
 pub use unite::{Rings, free, outlines, rings};
@@ -38,7 +42,10 @@ pub use wkt::to_wkt;
 use std::path::Path;
 
 use engine::geometry::{Area, Polygon, PolygonError, Ring};
-use engine::math::bounds;
+use engine::math::{bounds, sides};
+use places::places;
+use reading::Drawn;
+use thin::THICKNESS;
 
 /// The area that a person needs to stand, m².
 const STANDING_ROOM: f64 = 0.18;
@@ -57,7 +64,9 @@ pub struct FloorPlan {
     pub obstacles: Vec<Area>,
     /// The names of rooms and obstacles.
     pub names: Vec<Label>,
-    /// What readers of the results should know: polygons without effect.
+    /// The areas, lines and points that a scenario can refer to by their names.
+    pub places: Vec<Place>,
+    /// What readers of the results should know: polygons without effect, walls that are lines.
     pub notes: Vec<String>,
 }
 
@@ -66,7 +75,15 @@ pub struct FloorPlan {
 /// # Errors
 /// The file cannot be read, is neither format, or is not a valid floor plan. The message has the file and the place.
 pub fn read(path: &Path) -> Result<FloorPlan, FloorPlanError> {
-    in_file(path, parse)
+    read_as(path, &Reading::default())
+}
+
+/// As [`read`]; `reading` has what the file does not say itself.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_as(path: &Path, reading: &Reading) -> Result<FloorPlan, FloorPlanError> {
+    in_file(path, |text| FloorPlan::noted(drawn(text, false, reading)?))
 }
 
 /// Whether the name of a file is that of a floor plan.
@@ -81,12 +98,23 @@ pub fn is_plan(path: &Path) -> bool {
 /// # Errors
 /// Those of [`read`].
 pub fn read_obstacles(path: &Path) -> Result<FloorPlan, FloorPlanError> {
+    read_obstacles_as(path, &Reading::default())
+}
+
+/// As [`read_obstacles`]; `reading` has what the file does not say itself.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_obstacles_as(path: &Path, reading: &Reading) -> Result<FloorPlan, FloorPlanError> {
     in_file(path, |text| {
-        let mut shapes = shapes(text, true)?;
-        for shape in &mut shapes {
+        let Drawn { mut shapes, notes } = drawn(text, true, reading)?;
+        let areas = shapes.iter_mut().filter(|shape| shape.form == Form::Area);
+        for shape in areas {
             shape.kind = Kind::Obstacle;
         }
-        FloorPlan::of(&shapes)
+        let mut plan = FloorPlan::of(&shapes)?;
+        plan.notes.extend(notes);
+        Ok(plan)
     })
 }
 
@@ -95,7 +123,7 @@ pub fn read_obstacles(path: &Path) -> Result<FloorPlan, FloorPlanError> {
 /// # Errors
 /// Those of [`read`].
 pub fn parse(text: &str) -> Result<FloorPlan, FloorPlanError> {
-    FloorPlan::noted(&shapes(text, false)?)
+    FloorPlan::noted(drawn(text, false, &Reading::default())?)
 }
 
 /// Reads well-known text, such as that in the `geometry` table of a trajectory file. All of it is walkable area.
@@ -103,7 +131,7 @@ pub fn parse(text: &str) -> Result<FloorPlan, FloorPlanError> {
 /// # Errors
 /// Those of [`read`].
 pub fn parse_wkt(text: &str) -> Result<FloorPlan, FloorPlanError> {
-    FloorPlan::noted(&wkt::shapes(text)?)
+    FloorPlan::noted(wkt::shapes(text)?.into())
 }
 
 /// Applies `parse` to a file's text; errors name the file.
@@ -126,12 +154,12 @@ fn in_file(
     parse(&text).map_err(explained)
 }
 
-/// The polygons of GeoJSON, XML or WKT. If `all_obstacles`, the kinds of features do not matter.
-fn shapes(text: &str, all_obstacles: bool) -> Result<Vec<Shape>, FloorPlanError> {
+/// What GeoJSON, XML or WKT has. If `all_obstacles`, the kinds of features do not matter.
+fn drawn(text: &str, all_obstacles: bool, reading: &Reading) -> Result<Drawn, FloorPlanError> {
     match text.trim_start().bytes().next() {
-        Some(b'{') => geojson::shapes(text, all_obstacles),
-        Some(b'<') => xml::shapes(text.trim_start()),
-        _ => wkt::shapes(text),
+        Some(b'{') => Ok(geojson::shapes(text, all_obstacles)?.into()),
+        Some(b'<') => xml::drawn(text.trim_start(), reading),
+        _ => Ok(wkt::shapes(text)?.into()),
     }
 }
 
@@ -173,42 +201,43 @@ impl FloorPlan {
     }
 
     /// The plan of these polygons, with notes on those without effect.
-    fn noted(shapes: &[Shape]) -> Result<Self, FloorPlanError> {
-        Ok(Self {
-            notes: idle::notes(shapes)?,
-            ..Self::of(shapes)?
-        })
+    fn noted(Drawn { shapes, notes }: Drawn) -> Result<Self, FloorPlanError> {
+        let plan = Self::of(&shapes)?;
+        let notes = [notes, plan.notes, idle::notes(&shapes)?].concat();
+        Ok(Self { notes, ..plan })
     }
 
     fn of(shapes: &[Shape]) -> Result<Self, FloorPlanError> {
-        if shapes.is_empty() {
+        if !shapes.iter().any(|shape| shape.kind.is_built()) {
             return Err(FloorPlanError::Empty);
         }
-        let (mut walkable, mut obstacles) = (Vec::new(), Vec::new());
-        let mut names = Vec::new();
-        for shape in shapes {
-            let area = shape.area()?;
-            names.extend(shape.label(area));
-            if shape.kind == Kind::Obstacle {
-                obstacles.push(area.clone());
-            } else {
-                walkable.push(area.clone());
-            }
-        }
-        let [width, height] = extent(walkable.iter().chain(&obstacles));
-        if walkable.is_empty() {
-            if width.max(height) < LEAST_EXTENT {
+        let areas = |kind: Kind| -> Result<Vec<Area>, FloorPlanError> {
+            let shapes = shapes.iter().filter(|shape| shape.form == Form::Area);
+            let areas = shapes.filter(|shape| shape.kind == kind).map(Shape::area);
+            areas.map(|area| area.cloned()).collect()
+        };
+        let (given, obstacles) = (areas(Kind::Floor)?, areas(Kind::Obstacle)?);
+        let [width, height] = extent(given.iter().chain(&obstacles));
+        let plan = Self {
+            names: names(shapes)?,
+            places: places(shapes)?,
+            ..Self::default()
+        };
+        if given.is_empty() {
+            let walls = thin::bodies(shapes, &[])?;
+            if walls.is_empty() && width.max(height) < LEAST_EXTENT {
                 return Err(FloorPlanError::TooSmall { width, height });
             }
             return Ok(Self {
-                obstacles,
-                names,
-                ..Self::default()
+                obstacles: [obstacles, walls].concat(),
+                ..plan
             });
         }
-        let outlines = walkable.iter().map(|area| area.exterior.area());
-        let whole = outlines.fold(0.0, f64::max);
-        let mut walkable = unite::without(&walkable, &obstacles)?;
+        let mut walkable = unite::without(&given, &obstacles)?;
+        let walls = thin::bodies(shapes, &walkable)?;
+        if !walls.is_empty() {
+            walkable = unite::without(&walkable, &walls)?;
+        }
         // A smaller extent means a finer grid: compute the corners again.
         let mut before = width.max(height);
         loop {
@@ -219,6 +248,8 @@ impl FloorPlan {
             before = along.max(across);
             walkable = unite::without(&walkable, &[])?;
         }
+        let outlines = given.iter().map(|area| area.exterior.area());
+        let whole = outlines.fold(0.0, f64::max);
         let room = walkable.iter().map(Area::area).fold(0.0, f64::max);
         let [along, across] = extent(walkable.iter());
         let is_short = along.max(across) < SHORT;
@@ -228,12 +259,37 @@ impl FloorPlan {
                 false => FloorPlanError::NoRoom,
             });
         }
+        let mut notes = Vec::new();
+        if !walls.is_empty() {
+            let length: f64 = walls.iter().map(|wall| 0.5 * around(wall)).sum();
+            notes.push(format!(
+                "walls that are lines, {length:.1} m in all, stand on the floor {THICKNESS} m thick"
+            ));
+        }
         Ok(Self {
             walkable,
-            names,
-            ..Self::default()
+            notes,
+            ..plan
         })
     }
+}
+
+/// The names of rooms and obstacles.
+fn names(shapes: &[Shape]) -> Result<Vec<Label>, FloorPlanError> {
+    let areas = shapes
+        .iter()
+        .filter(|shape| shape.form == Form::Area && shape.kind.is_built());
+    let mut names = Vec::new();
+    for shape in areas {
+        names.extend(shape.label(shape.area()?));
+    }
+    Ok(names)
+}
+
+/// The sum of the lengths of the sides of an area, meters.
+fn around(area: &Area) -> f64 {
+    let sides = area.rings().flat_map(|ring| sides(ring.points()));
+    sides.map(|(a, b)| (b - a).norm()).sum()
 }
 
 /// The extent along x and along y, meters; 0 without areas.

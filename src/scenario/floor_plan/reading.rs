@@ -65,3 +65,10 @@ pub struct Drawn {
     /// What readers of the results should know of how it was read.
     pub notes: Vec<String>,
 }
+
+impl From<Vec<Shape>> for Drawn {
+    fn from(shapes: Vec<Shape>) -> Self {
+        let notes = Vec::new();
+        Self { shapes, notes }
+    }
+}

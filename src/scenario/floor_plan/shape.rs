@@ -190,9 +190,14 @@ impl Shape {
 
     /// The area of the rectangle around its outline, m².
     pub fn extent(&self) -> f64 {
-        let outline = self.rings.iter().take(1).flatten();
-        let [low, high] = bounds(outline.map(|&p| p.into())).unwrap_or_default();
+        let [low, high] = self.bounds();
         (high.x - low.x) * (high.y - low.y)
+    }
+
+    /// The corners of the rectangle around its outline, meters.
+    pub fn bounds(&self) -> [Vector; 2] {
+        let outline = self.rings.iter().take(1).flatten();
+        bounds(outline.map(|&p| p.into())).unwrap_or_default()
     }
 
     /// Its name, with a place inside.

@@ -1,24 +1,33 @@
 //! JuPedSim's former geometry format: XML with rooms, subrooms and obstacles. The only file that names roxmltree.
 //!
 //! The walls of a subroom are polygons, which are open where doors (transitions and crossings) are. Walls and doors
-//! joined end to end are its outline. The walkable area is the union of all subrooms without their obstacles.
+//! joined end to end are its outline. The walkable area is the union of all subrooms without their obstacles. The wall
+//! between two rooms is written for each of them, as a line: where both sides are floor it stays a wall.
+
+mod storeys;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::error::FloorPlanError;
 use super::kind::Kind;
-use super::shape::Shape;
+use super::reading::{Drawn, Reading};
+use super::shape::{SAME, Shape};
+use engine::math::{Vector, sides};
+use storeys::Room;
 
 /// The most nodes of a document.
 const MOST_NODES: u32 = 10_000_000;
 /// Ends of walls and doors this far apart meet, meters.
 const GAP: f64 = 0.01;
 
+/// The number of the room on the other side of doors that lead outside.
+const OUTSIDE: &str = "-1";
+
 /// A wall or door: an open path.
 type Path = Vec<[f64; 2]>;
 
-/// The polygons of `text`.
-pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
+/// The rooms, obstacles, walls and doors of `text`.
+pub fn drawn(text: &str, reading: &Reading) -> Result<Drawn, FloorPlanError> {
     let options = ParsingOptions {
         nodes_limit: MOST_NODES,
         ..ParsingOptions::default()
@@ -34,40 +43,85 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
     }
     let meters = unit(root)?;
     let doors = doors(root, meters)?;
-    let mut shapes = Vec::new();
+    let mut drawn = Drawn::default();
+    let mut rooms = Vec::new();
     for room in elements(root, "room") {
         for subroom in room.children().filter(|node| node.has_tag_name("subroom")) {
-            let place = format!("room {}, subroom {}", id(room), id(subroom));
-            let side = [id(room), id(subroom)];
-            let doors_of_room = doors.iter().filter(|door| door.sides.contains(&side));
-            let own: Vec<Path> = doors_of_room.map(|door| door.path.clone()).collect();
-            let parts = subroom.children();
-            let polygons = parts.filter(|node| node.has_tag_name("polygon"));
-            let outlines = polygons.map(|wall| vertices(wall, &place, meters));
-            let walls: Vec<Path> = outlines.collect::<Result<_, _>>()?;
-            let rings = vec![outline(walls, own, &place)?];
-            shapes.push(Shape {
-                name: caption(room),
-                ..Shape::new(place.clone(), rings, Kind::Floor)
-            });
-            for obstacle in elements(subroom, "obstacle") {
-                for polygon in elements(obstacle, "polygon") {
-                    let place = format!("{place}, obstacle {}", id(obstacle));
-                    let rings = vec![vertices(polygon, &place, meters)?];
-                    shapes.push(Shape {
-                        name: caption(obstacle),
-                        ..Shape::new(place, rings, Kind::Obstacle)
-                    });
-                }
-            }
+            let first = drawn.shapes.len();
+            subroom_of(room, subroom, &doors, meters, &mut drawn.shapes)?;
+            let shapes = first..drawn.shapes.len();
+            rooms.push(Room::of(room, subroom, shapes));
         }
     }
     let all = elements(root, "subroom").count();
-    if shapes.is_empty() && all > 0 {
+    if drawn.shapes.is_empty() && all > 0 {
         let reason = format!("has {all} <subroom>, none of them directly in a <room>");
         return Err(wrong("geometry", reason));
     }
-    Ok(shapes)
+    let rooms = storeys::choose(rooms, reading, &mut drawn)?;
+    let is_there = |door: &Door| {
+        rooms
+            .iter()
+            .any(|room| door.sides.iter().any(|side| room.side == *side))
+    };
+    let doors = doors.into_iter().filter(is_there);
+    drawn.shapes.extend(doors.map(Door::shape));
+    Ok(drawn)
+}
+
+/// Adds the floor, the walls and the obstacles of a subroom.
+fn subroom_of(
+    room: Node,
+    subroom: Node,
+    doors: &[Door],
+    meters: f64,
+    shapes: &mut Vec<Shape>,
+) -> Result<(), FloorPlanError> {
+    let place = format!("room {}, subroom {}", id(room), id(subroom));
+    let side = [id(room), id(subroom)];
+    let doors_of_room = doors.iter().filter(|door| door.sides.contains(&side));
+    let own: Vec<Path> = doors_of_room.map(|door| door.path.clone()).collect();
+    let parts = subroom.children();
+    let polygons = parts.filter(|node| node.has_tag_name("polygon"));
+    let outlines = polygons.map(|wall| vertices(wall, &place, meters));
+    let walls: Vec<Path> = outlines.collect::<Result<_, _>>()?;
+    let rings = vec![outline(&walls, &own, &place)?];
+    shapes.push(Shape {
+        name: caption(room),
+        ..Shape::new(place.clone(), rings, Kind::Floor)
+    });
+    let lines = walls.into_iter();
+    shapes.extend(lines.map(|wall| Shape::line(format!("{place}, wall"), wall, Kind::Wall)));
+    for obstacle in elements(subroom, "obstacle") {
+        for polygon in elements(obstacle, "polygon") {
+            let place = format!("{place}, obstacle {}", id(obstacle));
+            let points = vertices(polygon, &place, meters)?;
+            let is_screen = encloses_nothing(&points);
+            let shape = match is_screen {
+                true => Shape::line(place, points, Kind::Wall),
+                false => Shape::new(place, vec![points], Kind::Obstacle),
+            };
+            shapes.push(Shape {
+                name: caption(obstacle).filter(|_| !is_screen),
+                ..shape
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Whether points are on a line, or there and back.
+fn encloses_nothing(points: &[[f64; 2]]) -> bool {
+    let points: Vec<Vector> = points.iter().map(|&p| p.into()).collect();
+    let Some(&first) = points.first() else {
+        return false;
+    };
+    let turned: f64 = sides(&points)
+        .map(|(a, b)| (a - first).perp(&(b - first)))
+        .sum();
+    let length: f64 = sides(&points).map(|(a, b)| (b - a).norm()).sum();
+    let different = points.iter().any(|p| (p - first).norm() > SAME);
+    different && turned.abs() <= SAME * length
 }
 
 fn syntax(error: &impl ToString) -> FloorPlanError {
@@ -133,9 +187,25 @@ fn vertices(node: Node, place: &str, meters: f64) -> Result<Path, FloorPlanError
 
 /// A transition between rooms, or a crossing between subrooms.
 struct Door<'a> {
+    /// Its name in messages.
+    place: String,
+    /// Its caption, or its kind and number.
+    name: String,
     path: Path,
     /// The room and the subroom on each side.
     sides: [[&'a str; 2]; 2],
+}
+
+impl Door<'_> {
+    /// It as a line: an exit if one side of it is outside.
+    fn shape(self) -> Shape {
+        let is_exit = self.sides.iter().any(|[room, _]| *room == OUTSIDE);
+        let kind = if is_exit { Kind::Exit } else { Kind::Door };
+        Shape {
+            name: Some(self.name),
+            ..Shape::line(self.place, self.path, kind)
+        }
+    }
 }
 
 fn doors<'a>(root: Node<'a, 'a>, meters: f64) -> Result<Vec<Door<'a>>, FloorPlanError> {
@@ -152,6 +222,8 @@ fn doors<'a>(root: Node<'a, 'a>, meters: f64) -> Result<Vec<Door<'a>>, FloorPlan
         };
         Ok(Door {
             path: vertices(node, &place, meters)?,
+            name: caption(node).unwrap_or_else(|| place.clone()),
+            place,
             sides: [
                 [room("room1_id"), value("subroom1_id")],
                 [room("room2_id"), value("subroom2_id")],
@@ -161,36 +233,64 @@ fn doors<'a>(root: Node<'a, 'a>, meters: f64) -> Result<Vec<Door<'a>>, FloorPlan
     all.map(door).collect()
 }
 
-/// The outline of a subroom: walls joined end to end, and doors where no wall continues.
-fn outline(walls: Vec<Path>, doors: Vec<Path>, place: &str) -> Result<Path, FloorPlanError> {
-    let is_long = |path: &Path| path.len() > 1;
-    let mut walls: Vec<Path> = walls.into_iter().filter(is_long).collect();
-    let mut doors: Vec<Path> = doors.into_iter().filter(is_long).collect();
+/// The outline of a subroom: walls joined end to end, and doors where no wall continues. Walls that do not join stand
+/// within the outline if that is closed.
+fn outline(walls: &[Path], doors: &[Path], place: &str) -> Result<Path, FloorPlanError> {
+    let is_long = |path: &&Path| path.len() > 1;
+    let walls: Vec<Path> = walls.iter().filter(is_long).cloned().collect();
+    let doors: Vec<Path> = doors.iter().filter(is_long).cloned().collect();
     if walls.is_empty() {
         let reason = "it has no walls; write <polygon> with <vertex px=\"…\" py=\"…\"/>";
         return Err(wrong(place, reason.to_owned()));
     }
+    let (outline, left) = joined(walls, doors.clone());
+    let Some(&[x, y]) = left.first().and_then(|path| path.first()) else {
+        return Ok(outline);
+    };
+    let mut found = vec![outline];
+    let mut left = left;
+    while !left.is_empty() {
+        let (next, others) = joined(left, doors.clone());
+        found.push(next);
+        left = others;
+    }
+    let closed = found.iter().filter(|path| is_closed(path));
+    let largest = closed.max_by(|a, b| enclosed(a).total_cmp(&enclosed(b)));
+    largest.cloned().ok_or_else(|| {
+        let [end_x, end_y] = found[0][found[0].len() - 1];
+        let reason = format!(
+            "the walls do not join: no wall or door leads from ({end_x}, {end_y}) to the wall that begins at ({x}, \
+             {y}); close the gap, or write the outline as one polygon"
+        );
+        wrong(place, reason)
+    })
+}
+
+/// Whether a path ends where it begins.
+fn is_closed(path: &Path) -> bool {
+    path.len() > 2 && distance(path[0], path[path.len() - 1]) <= GAP
+}
+
+/// The area that a path encloses, m².
+fn enclosed(path: &Path) -> f64 {
+    let points: Vec<Vector> = path.iter().map(|&p| p.into()).collect();
+    let turned = sides(&points).map(|(a, b)| (a - points[0]).perp(&(b - points[0])));
+    0.5 * turned.sum::<f64>().abs()
+}
+
+/// The first wall with the walls that go on from its end, and doors where no wall does, until it is closed; and the
+/// walls that are left.
+fn joined(mut walls: Vec<Path>, mut doors: Vec<Path>) -> (Path, Vec<Path>) {
     let mut outline = walls.remove(0);
-    loop {
-        let (first, last) = (outline[0], outline[outline.len() - 1]);
-        if outline.len() > 2 && distance(first, last) <= GAP {
-            break;
-        }
+    while !is_closed(&outline) {
+        let last = outline[outline.len() - 1];
         let found = next(&mut walls, last).or_else(|| next(&mut doors, last));
         let Some(path) = found else {
             break;
         };
         outline.extend(path.into_iter().skip(1));
     }
-    if let Some(&[x, y]) = walls.first().and_then(|path| path.first()) {
-        let [end_x, end_y] = outline[outline.len() - 1];
-        let reason = format!(
-            "the walls do not join: no wall or door leads from ({end_x}, {end_y}) to the wall that begins at ({x}, \
-             {y}); close the gap, or write the outline as one polygon"
-        );
-        return Err(wrong(place, reason));
-    }
-    Ok(outline)
+    (outline, walls)
 }
 
 /// Takes the path that begins or ends at a point, in the direction away from it.

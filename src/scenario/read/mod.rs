@@ -8,6 +8,7 @@ pub mod draft;
 pub mod effective;
 pub mod late;
 pub mod parsed;
+pub mod places;
 pub mod plans;
 pub mod preset;
 pub mod scenario;

@@ -8,8 +8,10 @@ use crate::error::Problem;
 use crate::error::quote::shown;
 use crate::file::File;
 use crate::floor_plan;
-use crate::floor_plan::{FloorPlan, Label};
+use crate::floor_plan::{FloorPlan, FloorPlanError, Label, Reading};
 use crate::keys::shapes::{Outline, Ring};
+use crate::read::parsed::parsed;
+use crate::read::places;
 use crate::read::setting::Setting;
 use crate::scene::surroundings::{OBSTACLES, WALKABLE_AREA};
 use engine::geometry::Area;
@@ -18,6 +20,8 @@ use engine::geometry::Area;
 pub const KEYS: [&str; 2] = [WALKABLE_AREA, OBSTACLES];
 /// Words with which WKT begins.
 const WKT: [&str; 3] = ["POLYGON", "MULTIPOLYGON", "GEOMETRYCOLLECTION"];
+/// The key that says how they are read.
+const READING: &str = "plan";
 /// The key that gets the names in these files.
 const LABELS: &str = "labels";
 
@@ -33,50 +37,73 @@ pub struct Plans {
 
 impl Plans {
     /// Reads the files that `document` names, relative to `folder`, and takes their names out of it. Adds their labels
-    /// to the document, and notes on them. Returns also the files, each with its key.
+    /// to the document, and notes on them; replaces names of their places by their geometry. Returns also the files,
+    /// each with its key.
     pub fn take(
         document: &mut Value,
         folder: &Path,
         notes: &mut Vec<String>,
     ) -> Result<(Self, Vec<PlanFile>), Problem> {
         let (mut plans, mut files) = (Self::default(), Vec::new());
+        let reading = reading(document)?;
+        let (mut places, mut floor) = (Vec::new(), Vec::new());
         for key in KEYS {
-            let Some(name) = file_name(document, key)? else {
+            let Some(named) = named(document, key)? else {
                 continue;
             };
-            let path = folder.join(&name);
+            let path = folder.join(&named.file);
             let read = match key {
-                OBSTACLES => floor_plan::read_obstacles(&path),
-                _ => floor_plan::read(&path),
+                OBSTACLES => floor_plan::read_obstacles_as(&path, &reading),
+                _ => floor_plan::read_as(&path, &reading),
             };
-            let plan = read.map_err(|error| Problem::from(error).under(key))?;
+            let mut plan = read.map_err(|error| named.refused(error).under(key))?;
             files.push((key, path));
-            let name = shown(&name);
-            if key == WALKABLE_AREA && plan.walkable.is_empty() {
+            let name = shown(&named.file);
+            if key == WALKABLE_AREA && plan.walkable.is_empty() && !named.is_typed {
                 let reason = format!("{name}: contains only obstacles; name it under `obstacles`");
                 return Err(Problem::new(key, reason));
             }
             for note in &plan.notes {
-                notes.push(format!("{key}: {name}: {note}"));
+                notes.push(match named.is_typed {
+                    true => format!("{name}: {note}"),
+                    false => format!("{key}: {name}: {note}"),
+                });
             }
-            if !plan.names.is_empty() {
-                if document.get(LABELS).is_none() {
-                    document[LABELS] = json!([]);
-                }
-                // Anything else is rejected later.
-                if let Value::Array(labels) = &mut document[LABELS] {
-                    labels.extend(labels_of(&plan));
-                }
-            }
-            if key == OBSTACLES {
-                document[key] = json!([]);
-                plans.obstacles = Some(outlines(&plan.obstacles));
-            } else {
-                document[key] = Value::Null;
-                plans.walkable = Some(polygons(&plan.walkable));
-            }
+            plans.label(document, &plan);
+            places.append(&mut plan.places);
+            plans.add(document, key, &plan);
+            floor.append(&mut plan.walkable);
         }
+        places::enter(document, &places, &floor)?;
         Ok((plans, files))
+    }
+
+    /// Adds the names of a plan to the labels of a document.
+    fn label(&self, document: &mut Value, plan: &FloorPlan) {
+        if plan.names.is_empty() {
+            return;
+        }
+        if document.get(LABELS).is_none() {
+            document[LABELS] = json!([]);
+        }
+        // Anything else is rejected later.
+        if let Value::Array(labels) = &mut document[LABELS] {
+            labels.extend(labels_of(plan));
+        }
+    }
+
+    /// Takes the geometry of the plan that `document` names under a key.
+    fn add(&mut self, document: &mut Value, key: &str, plan: &FloorPlan) {
+        if key == WALKABLE_AREA {
+            document[key] = Value::Null;
+            self.walkable = Some(&plan.walkable)
+                .filter(|areas| !areas.is_empty())
+                .map(|areas| polygons(areas));
+        }
+        if key == OBSTACLES || plan.walkable.is_empty() {
+            document[OBSTACLES] = json!([]);
+            self.obstacles = Some(outlines(&plan.obstacles));
+        }
     }
 
     /// Enters the geometry into the keys of a document that lacks it.
@@ -99,16 +126,57 @@ pub fn write(files: &[PlanFile], keys: &File, document: &mut Value) {
     }
 }
 
-/// The name of the file that `document` has under a key.
-fn file_name(document: &Value, key: &str) -> Result<Option<String>, Problem> {
+/// How the files are read.
+fn reading(document: &Value) -> Result<Reading, Problem> {
+    match document.get(READING) {
+        None | Some(Value::Null) => Ok(Reading::default()),
+        Some(given) => parsed(given).map_err(|problem| problem.under(READING)),
+    }
+}
+
+/// A file that a document names.
+struct Named {
+    file: String,
+    /// Whether the command line names it, in place of the plan of the scenario.
+    is_typed: bool,
+}
+
+impl Named {
+    /// The problem with it. The command line is named in front of it already.
+    fn refused(&self, error: FloorPlanError) -> Problem {
+        match error {
+            FloorPlanError::File { error, .. } if self.is_typed => {
+                Problem::new("", error.to_string())
+            }
+            error => error.into(),
+        }
+    }
+}
+
+/// The key of the file that the command line names.
+const TYPED: &str = "geometry";
+
+/// The file that `document` has under a key.
+fn named(document: &Value, key: &str) -> Result<Option<Named>, Problem> {
     let reason = match document.get(key) {
         None | Some(Value::Null | Value::Array(_)) => return Ok(None),
         Some(Value::String(name)) if WKT.iter().any(|word| name.trim_start().starts_with(word)) => {
             "is WKT itself: save it as a file that ends in .wkt, and give its name here"
         }
-        Some(Value::String(name)) => return Ok(Some(name.clone())),
+        Some(Value::String(name)) => {
+            return Ok(Some(Named {
+                file: name.clone(),
+                is_typed: false,
+            }));
+        }
         Some(Value::Object(plan)) if plan.contains_key("type") => {
             "is GeoJSON: save it as a file that ends in .geojson, and give its name here"
+        }
+        Some(Value::Object(plan)) if plan.get(TYPED).is_some_and(Value::is_string) => {
+            return Ok(Some(Named {
+                file: plan[TYPED].as_str().unwrap_or_default().to_owned(),
+                is_typed: true,
+            }));
         }
         Some(_) => "must be a list of polygons, or the name of a file",
     };
@@ -128,6 +196,17 @@ impl Setting {
             ),
             Self::of(OBSTACLES, json!(outlines(&plan.obstacles)), text),
             Self::of(LABELS, labels_of(plan).collect(), text),
+        ]
+    }
+
+    /// As [`floor_plan`](Self::floor_plan), with the plan at `path`, which is read as the key `plan` says, and whose
+    /// places the scenario may name.
+    pub fn plan_file(path: &Path, text: &str) -> [Self; 3] {
+        let there = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        [
+            Self::of(WALKABLE_AREA, json!({ TYPED: there }), text),
+            Self::of(OBSTACLES, json!([]), text),
+            Self::of(LABELS, json!([]), text),
         ]
     }
 }

@@ -1,0 +1,103 @@
+//! What a plan names: areas, lines and points that a scenario refers to.
+
+use engine::math::{Vector, bounds, sides};
+
+use super::error::FloorPlanError;
+use super::kind::Kind;
+use super::shape::{Form, Shape};
+use super::thin::{self, Side};
+use engine::geometry::Area;
+
+/// A named area, line or point of a plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// Its name in the plan.
+    pub name: String,
+    /// What it is.
+    pub kind: Kind,
+    /// Its form.
+    pub form: Form,
+    /// Of an area, the outline, then the holes; of a line, its points; of a point, that point. Meters.
+    pub rings: Vec<Vec<[f64; 2]>>,
+}
+
+impl Place {
+    /// The length of a line, meters; the area of an area without its holes, m²; 0 for a point.
+    pub fn size(&self) -> f64 {
+        let mut rings = self.rings.iter();
+        let first: Vec<Vector> = rings
+            .next()
+            .into_iter()
+            .flatten()
+            .map(|&p| p.into())
+            .collect();
+        let length = |(a, b): (Vector, Vector)| (b - a).norm();
+        let area = |ring: &[Vector]| {
+            let twice: f64 = sides(ring)
+                .map(|(a, b)| (a - ring[0]).perp(&(b - ring[0])))
+                .sum();
+            0.5 * twice.abs()
+        };
+        match self.form {
+            Form::Area => {
+                let holes = rings.map(|hole| hole.iter().map(|&p| p.into()).collect::<Vec<_>>());
+                area(&first) - holes.map(|hole| area(&hole)).sum::<f64>()
+            }
+            Form::Line => first
+                .windows(2)
+                .map(|pair| length((pair[0], pair[1])))
+                .sum(),
+            Form::Point => 0.0,
+        }
+    }
+
+    /// The lower left and the upper right corner of the rectangle around it, meters.
+    pub fn extent(&self) -> [Vector; 2] {
+        bounds(self.rings.iter().flatten().map(|&p| p.into())).unwrap_or_default()
+    }
+}
+
+/// The line at which people who come from the floor enter the area of a place: the longest part of its outline with
+/// floor on both sides; if there is none, the longest along the edge of the floor. `None` if it is away from the floor.
+pub fn across(place: &Place, floor: &[Area]) -> Option<[Vector; 2]> {
+    let closed = place.rings.iter().map(|ring| {
+        let first = ring.first().copied();
+        ring.iter().copied().chain(first).collect::<Vec<_>>()
+    });
+    let lines: Vec<Vec<[f64; 2]>> = closed.collect();
+    let length = |[a, b]: &[Vector; 2]| (b - a).norm();
+    let longest = |parts: Vec<[Vector; 2]>| {
+        parts
+            .into_iter()
+            .max_by(|a, b| length(a).total_cmp(&length(b)))
+    };
+    longest(thin::parts(&lines, floor, Side::Within))
+        .or_else(|| longest(thin::parts(&lines, floor, Side::Edge)))
+}
+
+/// The named shapes. Areas are checked.
+///
+/// # Errors
+/// An area that crosses itself, or a line of one point.
+pub fn places(shapes: &[Shape]) -> Result<Vec<Place>, FloorPlanError> {
+    let mut places = Vec::new();
+    for shape in shapes {
+        let Some(name) = &shape.name else { continue };
+        let rings = match shape.form {
+            Form::Area => {
+                let rings = shape.area()?.rings();
+                rings
+                    .map(|ring| ring.points().iter().map(|&p| p.into()).collect())
+                    .collect()
+            }
+            Form::Line | Form::Point => shape.rings.clone(),
+        };
+        places.push(Place {
+            name: name.clone(),
+            kind: shape.kind,
+            form: shape.form,
+            rings,
+        });
+    }
+    Ok(places)
+}
