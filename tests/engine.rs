@@ -68,6 +68,8 @@ mod paper;
 mod passages;
 mod periodic;
 mod periodic_scenarios;
+mod plan_places;
+mod plan_walls;
 mod precision;
 mod prelude;
 mod prelude_runs;

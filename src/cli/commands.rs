@@ -10,8 +10,8 @@ use super::arguments::{ResumeOptions, RunOptions};
 use super::update::UpdateOptions;
 use super::values::generated;
 use super::{
-    accuracy, bench, calibrate, compare, draw, estimate, inspect, measure, page, report, reproduce,
-    stress, suite, sweep,
+    accuracy, bench, calibrate, compare, convert, draw, estimate, inspect, measure, page, report,
+    reproduce, stress, suite, sweep,
 };
 
 const EXAMPLES: &str = "\
@@ -41,6 +41,11 @@ const DRAW_EXAMPLES: &str = "\
 Examples:
   sandbox draw scenarios/station.json -o station.png
   sandbox draw evacuation.rrd -o evacuation.html";
+
+const CONVERT_EXAMPLES: &str = "\
+Examples:
+  sandbox convert station.xml -o station.json
+  sandbox convert scenarios/station.json -o station.geojson";
 
 const GENERATE_EXAMPLES: &str = "\
 Examples:
@@ -93,6 +98,9 @@ pub enum Command {
         after_help = DRAW_EXAMPLES
     )]
     Draw(draw::DrawOptions),
+    /// Write a floor plan or a scenario as a scenario in JSON, or its floor and places as GeoJSON
+    #[command(after_help = CONVERT_EXAMPLES)]
+    Convert(convert::ConvertOptions),
     /// Write the document that is handed in with a run or a study: plan, results with definitions, pictures, limits
     #[command(after_help = report::EXAMPLES)]
     Report(report::ReportOptions),

@@ -30,9 +30,7 @@ pub fn scenario(
     writing: u64,
     outputs: &mut Outputs,
 ) -> Result<Scenario, Failure> {
-    let settings = settings(scene, until, outputs)?;
-    let (text, file) = source.text()?;
-    let draft = Draft::read(&text, &file, &settings)?;
+    let draft = draft(source, scene, until, outputs)?;
     let is_default = draft.has_default_profile();
     let (scenario, _) = draft.within(main_memory(), writing)?;
     if let Source::File(path) = source {
@@ -48,6 +46,18 @@ pub fn scenario(
         talk(&format!("note: {note}"));
     }
     Ok(scenario)
+}
+
+/// Reads a scenario whose values are not compared yet; `until` as for [`scenario`].
+pub fn draft(
+    source: &Source,
+    scene: &SceneOptions,
+    until: Option<(&str, f64)>,
+    outputs: &mut Outputs,
+) -> Result<Draft, Failure> {
+    let settings = settings(scene, until, outputs)?;
+    let (text, file) = source.text()?;
+    Ok(Draft::read(&text, &file, &settings)?)
 }
 
 /// The settings of the command line; `until` as for [`scenario`].

@@ -32,6 +32,7 @@ mod accuracy;
 mod bench;
 mod calibrate;
 mod compare;
+mod convert;
 mod page;
 
 mod draw;
@@ -119,6 +120,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Resume(options) => drive::resume(&options),
         Command::Inspect(options) => inspect::run(&options),
         Command::Draw(options) => draw::run(&options),
+        Command::Convert(options) => convert::run(&options),
         Command::Page(options) => {
             old("page", "draw RUN -o FILE.html");
             page::run(&options)

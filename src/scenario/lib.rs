@@ -61,6 +61,8 @@ pub use read::document::read as read_document;
 #[doc(hidden)]
 pub use read::draft::Draft;
 #[doc(hidden)]
+pub use read::drawing::beginning;
+#[doc(hidden)]
 pub use read::scenario::{read_text, shipped_text};
 #[doc(hidden)]
 pub use read::shipped::built_in;

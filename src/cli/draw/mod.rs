@@ -7,6 +7,7 @@ mod arguments;
 mod egress;
 mod look;
 mod paths;
+mod places;
 mod simulated;
 
 pub use arguments::DrawOptions;
@@ -124,6 +125,10 @@ pub fn run(options: &DrawOptions) -> Result<(), Failure> {
     if times.is_animation {
         result["frames"] = json!(count);
         text = format!("{file}: {count} frames from {from:.2} s to {time:.2} s\n");
+    }
+    if !run.places.is_empty() {
+        result["places"] = places::json(&run.places);
+        text.push_str(&places::text(&run.places));
     }
     tell(program.json, || result, || text)
 }

@@ -12,7 +12,7 @@ use lab::measure::{Behind, Kernel, MOST_HIDDEN, Site, parts};
 use output::colors::{DENSITY_RANGE, SPEED_RANGE};
 use output::picture::Crowd;
 use scenario::Scenario;
-use scenario::floor_plan::Label;
+use scenario::floor_plan::{Label, Place};
 use scenario::measurements::Observed;
 
 /// The names of quantities that every crowd has.
@@ -63,6 +63,8 @@ pub struct Run {
     pub support_radius: f64,
     /// The places that its measurements observe.
     pub observed: Vec<(String, Observed)>,
+    /// What its floor plan names.
+    pub places: Vec<Place>,
     /// Texts.
     pub labels: Vec<Label>,
     /// The mass of an average person, kg, if forces on walls are measured.
@@ -87,6 +89,7 @@ impl Run {
             support_radius: support_radius(frames.scene()),
             observed: measurements.flat_map(|one| one.observed()).collect(),
             labels: scenario.labels.clone(),
+            places: scenario.places.clone(),
             body_mass: None,
             times: None,
             scenario: None,
@@ -110,6 +113,7 @@ impl Run {
             support_radius: support_radius(frames.scene()),
             observed: Vec::new(),
             labels: Vec::new(),
+            places: Vec::new(),
             body_mass: None,
             times: None,
             scenario: None,

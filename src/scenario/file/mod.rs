@@ -133,7 +133,8 @@ pub struct File {
     /// How the files of `walkable_area` and `obstacles` are read: what they do not say themselves.
     pub plan: Option<Reading>,
     /// Solid bodies, corners in meters, in either orientation: a list of polygons, each a list of corners or of rings
-    /// (the outline, then the holes), or the name of a WKT, GeoJSON or JuPedSim XML file.
+    /// (the outline, then the holes), or the name of a WKT, GeoJSON or JuPedSim XML file. Corners that enclose no area, such
+    /// as two points, are a wall of 1 cm.
     #[schemars(schema_with = "obstacles")]
     pub obstacles: Vec<Outline>,
     /// The scene repeats itself without end.
@@ -283,7 +284,13 @@ fn walkable_area(generator: &mut SchemaGenerator) -> Schema {
 }
 
 fn obstacles(generator: &mut SchemaGenerator) -> Schema {
-    let obstacle = generator.subschema_for::<Outline>();
+    let corners = json_schema!({
+        "description": "A ring: its corners in order, in either orientation; two points are a wall.",
+        "type": "array", "items": generator.subschema_for::<Point>(), "minItems": 2,
+    });
+    let rings =
+        json_schema!({"type": "array", "items": generator.subschema_for::<Ring>(), "minItems": 1});
+    let obstacle = json_schema!({"description": "A polygon: its corners, or its rings", "anyOf": [corners, rings]});
     json_schema!({"anyOf": [floor_plan(), {"type": "array", "items": obstacle}]})
 }
 

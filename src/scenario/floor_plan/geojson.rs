@@ -8,25 +8,28 @@ use serde_json::Value;
 
 use super::error::FloorPlanError;
 use super::kind::Kind;
+use super::reading::Drawn;
 use super::shape::{Form, Geometry as Parts, Shape, part};
-use super::wkt::IN_DEGREES;
+use super::units::{Coordinates, of_system};
 
 /// The property that says what a feature is. Without it, a feature is floor.
 const KIND: &str = "kind";
 /// The property with the name of a feature.
 const NAME: &str = "name";
 
-/// The polygons of `text`. If `all_obstacles`, every polygon is an obstacle, of any kind.
-pub fn shapes(text: &str, all_obstacles: bool) -> Result<Vec<Shape>, FloorPlanError> {
-    let document: Value = serde_json::from_str(text).map_err(|error| syntax(&error))?;
+/// What `text` has. If `all_obstacles`, every polygon and line is an obstacle, of any kind.
+pub fn drawn(text: &str, all_obstacles: bool) -> Result<Drawn, FloorPlanError> {
+    let mut document: Value = serde_json::from_str(text).map_err(|error| syntax(&error))?;
     if kinds::is_scenario(&document) {
         let reason = "it is a scenario, whose plan is in its `walkable_area`".to_owned();
         let format = "GeoJSON";
         return Err(FloorPlanError::Syntax { format, reason });
     }
-    refuse_degrees(&document)?;
-    let mut shapes = Vec::new();
-    let mut add = |one: &Feature, place: &str| feature(one, place, all_obstacles, &mut shapes);
+    let mut drawn = Drawn::default();
+    declared(&document, &mut drawn)?;
+    without_empty_polygons(&mut document);
+    let shapes = &mut drawn.shapes;
+    let mut add = |one: &Feature, place: &str| feature(one, place, all_obstacles, shapes);
     match serde_json::from_value(document).map_err(|error| syntax(&error))? {
         GeoJson::Geometry(geometry) => add(&Feature::from(geometry), "")?,
         GeoJson::Feature(one) => add(&one, "")?,
@@ -36,7 +39,28 @@ pub fn shapes(text: &str, all_obstacles: bool) -> Result<Vec<Shape>, FloorPlanEr
             }
         }
     }
-    Ok(shapes)
+    Ok(drawn)
+}
+
+/// Takes polygons without rings out of MultiPolygons, at any depth: the reader refuses them.
+fn without_empty_polygons(value: &mut Value) {
+    if value["type"] == "MultiPolygon" {
+        if let Some(polygons) = value["coordinates"].as_array_mut() {
+            polygons.retain(|polygon| polygon.as_array().is_none_or(|rings| !rings.is_empty()));
+        }
+        return;
+    }
+    match value {
+        Value::Array(list) => list.iter_mut().for_each(without_empty_polygons),
+        Value::Object(keys) => {
+            let inner = ["features", "geometry", "geometries"];
+            let inner = keys
+                .iter_mut()
+                .filter(|(key, _)| inner.contains(&key.as_str()));
+            inner.for_each(|(_, one)| without_empty_polygons(one));
+        }
+        _ => {}
+    }
 }
 
 fn syntax(error: &impl ToString) -> FloorPlanError {
@@ -46,15 +70,21 @@ fn syntax(error: &impl ToString) -> FloorPlanError {
     }
 }
 
-/// Files older than RFC 7946 may declare their coordinate system.
-fn refuse_degrees(document: &Value) -> Result<(), FloorPlanError> {
+/// The unit of the coordinate system that files older than RFC 7946 may declare.
+fn declared(document: &Value, drawn: &mut Drawn) -> Result<(), FloorPlanError> {
     let Some(name) = document["crs"]["properties"]["name"].as_str() else {
         return Ok(());
     };
-    let code = name.rsplit(':').next().and_then(|code| code.parse().ok());
-    let known = code.is_some_and(|code| IN_DEGREES.contains(&code));
-    if known || name.to_ascii_uppercase().contains("CRS84") {
-        return Err(FloorPlanError::Degrees(format!("crs {name}")));
+    match of_system(name) {
+        Coordinates::Meters => {}
+        Coordinates::Degrees => return Err(FloorPlanError::Degrees(format!("crs {name}"))),
+        Coordinates::Other(unit, meters) => {
+            drawn.unit = Some((format!("the unit of {}, the {unit},", shown(name)), meters));
+        }
+        Coordinates::Unknown => drawn.notes.push(format!(
+            "the coordinate system {} is not known: its coordinates are taken as meters; `plan.unit` says otherwise",
+            shown(name)
+        )),
     }
     Ok(())
 }

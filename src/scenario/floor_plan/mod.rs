@@ -24,6 +24,7 @@ mod reading;
 mod shape;
 mod thin;
 mod unite;
+mod units;
 mod wkt;
 mod xml;
 
@@ -42,10 +43,10 @@ pub use wkt::to_wkt;
 use std::path::Path;
 
 use engine::geometry::{Area, Polygon, PolygonError, Ring};
-use engine::math::{bounds, sides};
+use engine::math::bounds;
 use places::places;
 use reading::Drawn;
-use thin::THICKNESS;
+pub use thin::THICKNESS;
 
 /// The area that a person needs to stand, m².
 const STANDING_ROOM: f64 = 0.18;
@@ -107,7 +108,9 @@ pub fn read_obstacles(path: &Path) -> Result<FloorPlan, FloorPlanError> {
 /// Those of [`read`].
 pub fn read_obstacles_as(path: &Path, reading: &Reading) -> Result<FloorPlan, FloorPlanError> {
     in_file(path, |text| {
-        let Drawn { mut shapes, notes } = drawn(text, true, reading)?;
+        let Drawn {
+            mut shapes, notes, ..
+        } = drawn(text, true, reading)?;
         let areas = shapes.iter_mut().filter(|shape| shape.form == Form::Area);
         for shape in areas {
             shape.kind = Kind::Obstacle;
@@ -131,7 +134,7 @@ pub fn parse(text: &str) -> Result<FloorPlan, FloorPlanError> {
 /// # Errors
 /// Those of [`read`].
 pub fn parse_wkt(text: &str) -> Result<FloorPlan, FloorPlanError> {
-    FloorPlan::noted(wkt::shapes(text)?.into())
+    FloorPlan::noted(wkt::drawn(text)?)
 }
 
 /// Applies `parse` to a file's text; errors name the file.
@@ -156,11 +159,13 @@ fn in_file(
 
 /// What GeoJSON, XML or WKT has. If `all_obstacles`, the kinds of features do not matter.
 fn drawn(text: &str, all_obstacles: bool, reading: &Reading) -> Result<Drawn, FloorPlanError> {
-    match text.trim_start().bytes().next() {
-        Some(b'{') => Ok(geojson::shapes(text, all_obstacles)?.into()),
-        Some(b'<') => xml::drawn(text.trim_start(), reading),
-        _ => Ok(wkt::shapes(text)?.into()),
-    }
+    let mut drawn = match text.trim_start().bytes().next() {
+        Some(b'{') => geojson::drawn(text, all_obstacles)?,
+        Some(b'<') => xml::drawn(text.trim_start(), reading)?,
+        _ => wkt::drawn(text)?,
+    };
+    drawn.place(reading)?;
+    Ok(drawn)
 }
 
 impl FloorPlan {
@@ -185,6 +190,15 @@ impl FloorPlan {
         shape.area().cloned()
     }
 
+    /// The bodies of a wall along a line, one for each of its straight parts, if `points` enclose no area.
+    pub fn wall(points: &[[f64; 2]]) -> Option<Vec<Area>> {
+        let line = Shape::line(String::new(), points.to_vec(), Kind::Wall);
+        let is_line = thin::encloses_nothing(points);
+        thin::bodies(&[line], &[])
+            .ok()
+            .filter(|bodies| is_line && !bodies.is_empty())
+    }
+
     /// The solid bodies of the plan: the surroundings of the walkable area, then the obstacles.
     ///
     /// # Errors
@@ -201,7 +215,7 @@ impl FloorPlan {
     }
 
     /// The plan of these polygons, with notes on those without effect.
-    fn noted(Drawn { shapes, notes }: Drawn) -> Result<Self, FloorPlanError> {
+    fn noted(Drawn { shapes, notes, .. }: Drawn) -> Result<Self, FloorPlanError> {
         let plan = Self::of(&shapes)?;
         let notes = [notes, plan.notes, idle::notes(&shapes)?].concat();
         Ok(Self { notes, ..plan })
@@ -235,8 +249,15 @@ impl FloorPlan {
         }
         let mut walkable = unite::without(&given, &obstacles)?;
         let walls = thin::bodies(shapes, &walkable)?;
+        let mut notes = Vec::new();
         if !walls.is_empty() {
+            let whole: f64 = walkable.iter().map(Area::area).sum();
             walkable = unite::without(&walkable, &walls)?;
+            let left: f64 = walkable.iter().map(Area::area).sum();
+            notes.push(format!(
+                "walls that are lines, {:.1} m in all, stand on the floor {THICKNESS} m thick",
+                (whole - left) / THICKNESS
+            ));
         }
         // A smaller extent means a finer grid: compute the corners again.
         let mut before = width.max(height);
@@ -259,13 +280,6 @@ impl FloorPlan {
                 false => FloorPlanError::NoRoom,
             });
         }
-        let mut notes = Vec::new();
-        if !walls.is_empty() {
-            let length: f64 = walls.iter().map(|wall| 0.5 * around(wall)).sum();
-            notes.push(format!(
-                "walls that are lines, {length:.1} m in all, stand on the floor {THICKNESS} m thick"
-            ));
-        }
         Ok(Self {
             walkable,
             notes,
@@ -284,12 +298,6 @@ fn names(shapes: &[Shape]) -> Result<Vec<Label>, FloorPlanError> {
         names.extend(shape.label(shape.area()?));
     }
     Ok(names)
-}
-
-/// The sum of the lengths of the sides of an area, meters.
-fn around(area: &Area) -> f64 {
-    let sides = area.rings().flat_map(|ring| sides(ring.points()));
-    sides.map(|(a, b)| (b - a).norm()).sum()
 }
 
 /// The extent along x and along y, meters; 0 without areas.

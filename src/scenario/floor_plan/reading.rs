@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::error::FloorPlanError;
 use super::kind::Kind;
 use super::shape::Shape;
+use super::units;
 
 /// How the files of `walkable_area` and `obstacles` are read: what they do not say themselves
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -23,6 +25,10 @@ pub struct Reading {
     /// The unit of the coordinates: `m`, `cm`, `mm`, `ft` or `in`. Default: what the file says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
+    /// The point of the file that becomes the origin, meters. Default: its own origin; for a drawing far from that, its
+    /// lower left corner.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub origin: Option<[f64; 2]>,
     /// Ends of lines this near to another line meet it, meters. Default: 0.02.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1))]
@@ -62,13 +68,38 @@ impl Reading {
 pub struct Drawn {
     /// Its geometries, meters.
     pub shapes: Vec<Shape>,
+    /// The unit that the file declares, and its meters; `None` for meters, or if it declares none.
+    pub unit: Option<(String, f64)>,
     /// What readers of the results should know of how it was read.
     pub notes: Vec<String>,
 }
 
-impl From<Vec<Shape>> for Drawn {
-    fn from(shapes: Vec<Shape>) -> Self {
-        let notes = Vec::new();
-        Self { shapes, notes }
+impl Drawn {
+    /// Converts the coordinates to meters from the origin that `reading` gives.
+    ///
+    /// # Errors
+    /// The unit is unknown.
+    pub fn place(&mut self, reading: &Reading) -> Result<(), FloorPlanError> {
+        let typed = reading.unit.as_deref().map(units::named).transpose()?;
+        let declared = self.unit.take().filter(|_| typed.is_none());
+        if let Some((name, _)) = &declared {
+            self.notes.push(format!(
+                "the coordinates are converted from {name} to meters"
+            ));
+        }
+        let meters = typed.or(declared.map(|(_, meters)| meters)).unwrap_or(1.0);
+        let [x, y] = reading.origin.unwrap_or_default();
+        if meters == 1.0 && [x, y] == [0.0, 0.0] {
+            return Ok(());
+        }
+        for point in self
+            .shapes
+            .iter_mut()
+            .flat_map(|shape| &mut shape.rings)
+            .flatten()
+        {
+            *point = [point[0] * meters - x, point[1] * meters - y];
+        }
+        Ok(())
     }
 }

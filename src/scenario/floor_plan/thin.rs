@@ -79,6 +79,20 @@ fn stretches(points: &[[f64; 2]]) -> impl Iterator<Item = Stretch> {
     long.map(|ends| Stretch { ends })
 }
 
+/// Whether points are on a line, or there and back.
+pub fn encloses_nothing(points: &[[f64; 2]]) -> bool {
+    let points: Vec<Vector> = points.iter().map(|&p| p.into()).collect();
+    let Some(&first) = points.first() else {
+        return false;
+    };
+    let turned: f64 = sides(&points)
+        .map(|(a, b)| (a - first).perp(&(b - first)))
+        .sum();
+    let length: f64 = sides(&points).map(|(a, b)| (b - a).norm()).sum();
+    let different = points.iter().any(|p| (p - first).norm() > SAME);
+    different && turned.abs() <= SAME * length
+}
+
 /// The bodies of the walls among `shapes` that are lines: of their parts with floor on both sides, or of all of them if
 /// there is no floor.
 pub fn bodies(shapes: &[Shape], floor: &[Area]) -> Result<Vec<Area>, FloorPlanError> {

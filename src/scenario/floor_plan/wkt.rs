@@ -7,25 +7,23 @@ use wkt::types::{Coord, Dimension, LineString, MultiPolygon, Point, Polygon};
 
 use super::error::FloorPlanError;
 use super::kind::Kind;
-use super::shape::{Form, Geometry, Shape};
+use super::reading::Drawn;
+use super::shape::{Form, Geometry};
+use super::units::{Coordinates, of_system};
 use engine::geometry::Area;
 use engine::math::Vector;
-
-/// EPSG codes of common coordinate systems in degrees.
-pub(super) const IN_DEGREES: [u32; 16] = [
-    4326, 4979, 4258, 4937, 4269, 4267, 4277, 4230, 4283, 7844, 4490, 4612, 6668, 4674, 4171, 4312,
-];
 
 /// Deepest nesting of parentheses: the parser recurses. Three levels suffice without collections.
 const DEEPEST: usize = 64;
 
-/// The polygons of `text`, which has one or more geometries.
-pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
+/// What `text` has: one or more geometries.
+pub fn drawn(text: &str) -> Result<Drawn, FloorPlanError> {
     let pieces = pieces(text)?;
     let several = pieces.len() > 1;
-    let mut shapes = Vec::new();
+    let mut drawn = Drawn::default();
     for (line, piece) in pieces {
-        let piece = without_srid(piece)?;
+        let piece = without_srid(piece, &mut drawn)?;
+        let shapes = &mut drawn.shapes;
         let wkt = Wkt::<f64>::from_str(piece).map_err(|reason| FloorPlanError::Syntax {
             format: "WKT",
             reason: format!("line {line}: {reason}{}", formats(piece)),
@@ -35,7 +33,7 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
             false => String::new(),
         };
         let first = shapes.len();
-        geometry(&wkt).shapes(&place, Kind::Floor, &mut shapes)?;
+        geometry(&wkt).shapes(&place, Kind::Floor, shapes)?;
         for shape in &mut shapes[first..] {
             match shape.form {
                 Form::Area => {}
@@ -44,7 +42,7 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
             }
         }
     }
-    Ok(shapes)
+    Ok(drawn)
 }
 
 /// What is probably wrong in a piece that cannot be read: numbers and points that are separated in another way, or
@@ -112,8 +110,8 @@ fn pieces(text: &str) -> Result<Vec<(usize, &str)>, FloorPlanError> {
     Ok(found)
 }
 
-/// Removes a prefix as in `SRID=25832;POLYGON …`, which PostGIS writes.
-fn without_srid(piece: &str) -> Result<&str, FloorPlanError> {
+/// Removes a prefix as in `SRID=25832;POLYGON …`, which PostGIS writes, and takes its unit.
+fn without_srid<'a>(piece: &'a str, drawn: &mut Drawn) -> Result<&'a str, FloorPlanError> {
     let Some((srid, geometry)) = piece.split_once(';') else {
         return Ok(piece);
     };
@@ -121,8 +119,12 @@ fn without_srid(piece: &str) -> Result<&str, FloorPlanError> {
     let Some(code) = code.strip_prefix("SRID=") else {
         return Ok(piece);
     };
-    if code.parse().is_ok_and(|code| IN_DEGREES.contains(&code)) {
-        return Err(FloorPlanError::Degrees(srid.trim().to_owned()));
+    match of_system(code) {
+        Coordinates::Degrees => return Err(FloorPlanError::Degrees(srid.trim().to_owned())),
+        Coordinates::Other(unit, meters) => {
+            drawn.unit = Some((format!("the unit of {}, the {unit},", srid.trim()), meters));
+        }
+        Coordinates::Meters | Coordinates::Unknown => {}
     }
     Ok(geometry.trim())
 }

@@ -11,7 +11,8 @@ use roxmltree::{Document, Node, ParsingOptions};
 use super::error::FloorPlanError;
 use super::kind::Kind;
 use super::reading::{Drawn, Reading};
-use super::shape::{SAME, Shape};
+use super::shape::Shape;
+use super::thin::encloses_nothing;
 use engine::math::{Vector, sides};
 use storeys::Room;
 
@@ -108,20 +109,6 @@ fn subroom_of(
         }
     }
     Ok(())
-}
-
-/// Whether points are on a line, or there and back.
-fn encloses_nothing(points: &[[f64; 2]]) -> bool {
-    let points: Vec<Vector> = points.iter().map(|&p| p.into()).collect();
-    let Some(&first) = points.first() else {
-        return false;
-    };
-    let turned: f64 = sides(&points)
-        .map(|(a, b)| (a - first).perp(&(b - first)))
-        .sum();
-    let length: f64 = sides(&points).map(|(a, b)| (b - a).norm()).sum();
-    let different = points.iter().any(|p| (p - first).norm() > SAME);
-    different && turned.abs() <= SAME * length
 }
 
 fn syntax(error: &impl ToString) -> FloorPlanError {

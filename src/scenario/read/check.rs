@@ -42,15 +42,17 @@ impl Draft {
         without_schema(&mut document)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut notes = Vec::new();
-        let (plans, mut files) = Plans::take(&mut document, folder, &mut notes)?;
+        let (mut plans, mut files) = Plans::take(&mut document, folder, &mut notes)?;
         files.extend(curves::fill(&mut document, folder)?);
         let mut keys = Self::check_keys(&document)?;
+        let places = std::mem::take(&mut plans.places);
         plans.enter(&mut keys);
         files.extend(data::fill(&mut document, &mut keys, folder, &mut notes)?);
         let need = Need::of(&keys, &numerics::first_clock(&keys), duration(&keys))?;
         Ok(Self {
             document,
             files,
+            places,
             keys,
             notes,
             need,
@@ -159,6 +161,7 @@ impl Draft {
             profile_name: blend.name,
             document,
             files: self.files,
+            places: self.places,
             notes,
             passage_width,
             scene,

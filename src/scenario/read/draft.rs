@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::error::numbers::tidy;
 use crate::error::{Problem, ScenarioError};
 use crate::file::File;
+use crate::floor_plan::Place;
 use crate::kinds;
 use crate::read::plans::PlanFile;
 use crate::read::scenario::Scenario;
@@ -22,6 +23,8 @@ pub struct Draft {
     pub(super) document: Value,
     /// The files that it names.
     pub(super) files: Vec<PlanFile>,
+    /// What its floor plans name.
+    pub(super) places: Vec<Place>,
     pub(super) keys: File,
     /// Notes on these files, for readers of the results.
     pub(super) notes: Vec<String>,

@@ -5,6 +5,7 @@ pub mod curves;
 pub mod data;
 pub mod document;
 pub mod draft;
+pub mod drawing;
 pub mod effective;
 pub mod late;
 pub mod parsed;

@@ -8,7 +8,7 @@ use crate::error::Problem;
 use crate::error::quote::shown;
 use crate::file::File;
 use crate::floor_plan;
-use crate::floor_plan::{FloorPlan, FloorPlanError, Label, Reading};
+use crate::floor_plan::{FloorPlan, FloorPlanError, Label, Place, Reading};
 use crate::keys::shapes::{Outline, Ring};
 use crate::read::parsed::parsed;
 use crate::read::places;
@@ -33,6 +33,8 @@ pub type PlanFile = (&'static str, PathBuf);
 pub struct Plans {
     walkable: Option<Vec<Vec<Ring>>>,
     obstacles: Option<Vec<Outline>>,
+    /// What they name.
+    pub places: Vec<Place>,
 }
 
 impl Plans {
@@ -46,7 +48,7 @@ impl Plans {
     ) -> Result<(Self, Vec<PlanFile>), Problem> {
         let (mut plans, mut files) = (Self::default(), Vec::new());
         let reading = reading(document)?;
-        let (mut places, mut floor) = (Vec::new(), Vec::new());
+        let mut floor = Vec::new();
         for key in KEYS {
             let Some(named) = named(document, key)? else {
                 continue;
@@ -70,11 +72,11 @@ impl Plans {
                 });
             }
             plans.label(document, &plan);
-            places.append(&mut plan.places);
+            plans.places.append(&mut plan.places);
             plans.add(document, key, &plan);
             floor.append(&mut plan.walkable);
         }
-        places::enter(document, &places, &floor)?;
+        places::enter(document, &plans.places, &floor)?;
         Ok((plans, files))
     }
 

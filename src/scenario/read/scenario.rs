@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::error::{Problem, ScenarioError};
 use crate::file::{Stop, range};
-use crate::floor_plan::Label;
+use crate::floor_plan::{Label, Place};
 use crate::input;
 use crate::measurements::Measurement;
 use crate::read::document;
@@ -53,6 +53,8 @@ pub struct Scenario {
     pub document: Value,
     /// The files that it names.
     pub files: Vec<PlanFile>,
+    /// The areas, lines and points that its floor plans name.
+    pub places: Vec<Place>,
     /// The settings that differ from the file, as typed: `gas_constant=400`, `seed 2`.
     pub changes: Vec<String>,
     /// What was changed to make it run, for readers of its results.

@@ -1,11 +1,14 @@
 //! Notes on slits between floors: drawings whose rooms nearly touch close the doors between them.
 
 use crate::error::quote::to_centimeters;
+use crate::floor_plan::THICKNESS;
 use engine::geometry::Walls;
 use engine::math::{Vector, direction, perpendicular};
 
 /// Solids between floors that are thinner are slits, not walls, meters.
 const SLIT: f64 = 0.02;
+/// Rounding of the thickness of walls, meters.
+const ROUNDING: f64 = 1e-5;
 /// Shorter slits are not named: agents would not fit through, meters.
 const SHORTEST: f64 = 0.3;
 /// This many slits are named.
@@ -86,7 +89,12 @@ fn between(one: &Edge, other: &Edge) -> Option<(Vector, f64)> {
         (point - one[0]).dot(&across)
     };
     let ends = [away(low), away(high)];
-    let is_narrow = ends.iter().all(|away| away.abs() <= SLIT) && ends[0] * ends[1] > 0.0;
+    // Walls that a plan gives as lines have this thickness.
+    let is_wall = ends
+        .iter()
+        .all(|away| (away.abs() - THICKNESS).abs() < ROUNDING);
+    let is_narrow =
+        ends.iter().all(|away| away.abs() <= SLIT) && ends[0] * ends[1] > 0.0 && !is_wall;
     let middle = 0.5 * (low + high);
     is_narrow.then(|| {
         let width = away(middle);

@@ -40,7 +40,11 @@ pub fn without_effect(file: &File) -> Result<Vec<String>, Problem> {
     }
     for (k, given) in file.obstacles.iter().enumerate() {
         let place = format!("{OBSTACLES}[{k}]");
-        shapes.push(Shape::new(place, rings(given.rings())?, Kind::Obstacle));
+        let rings = rings(given.rings())?;
+        let is_wall = rings.iter().any(|ring| FloorPlan::wall(ring).is_some());
+        if !is_wall {
+            shapes.push(Shape::new(place, rings, Kind::Obstacle));
+        }
     }
     Ok(floor_plan::without_effect(&shapes)?)
 }
@@ -122,10 +126,17 @@ pub fn area(given: &[GivenRing]) -> Result<Area, Problem> {
     Ok(FloorPlan::obstacle(&rings(given)?)?)
 }
 
-/// A body, with its copies in a periodic scene.
+/// A body, with its copies in a periodic scene; or the bodies of a wall without thickness, one for each straight part.
 fn obstacle(given: &Outline, period: Option<&Period>) -> Result<Vec<Polygon>, Problem> {
     if let Some(period) = period {
         return periodic::bodies(&rings(given.rings())?, period);
+    }
+    if let Outline::Ring(ring) = given {
+        let bodies = FloorPlan::wall(&points(ring)?);
+        if let Some(bodies) = bodies {
+            let solid = bodies.into_iter().map(Polygon::filling);
+            return Ok(solid.collect::<Result<_, _>>()?);
+        }
     }
     let polygon = match given {
         Outline::Ring(ring) => Polygon::new(points(ring)?.into_iter().map(Into::into).collect()),

@@ -1,0 +1,87 @@
+//! `sandbox convert`: a floor plan or a scenario as JSON or GeoJSON.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::arguments::SceneOptions;
+use super::failure::Failure;
+use super::inputs;
+use super::terminal::{talk, tell};
+
+use runs::case::Source;
+use runs::outputs::{Manner, Outputs, write_file};
+use scenario::floor_plan::is_plan;
+use scenario::{Draft, beginning};
+
+#[derive(Args)]
+pub struct ConvertOptions {
+    /// A floor plan, a scenario, or the name of a built-in one
+    pub input: PathBuf,
+    /// The file to write: a scenario (.json) that needs no other file, or the floor and the places as GeoJSON
+    /// (.geojson), in meters
+    #[arg(short, long, value_name = "FILE")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    pub scene: SceneOptions,
+}
+
+pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
+    let out = &options.out;
+    let ending = out
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_lowercase();
+    if ending != "json" && ending != "geojson" {
+        let reason = format!(
+            "--out {}: the file must end in .json or .geojson",
+            out.display()
+        );
+        return Err(Failure::Input(reason));
+    }
+    let mut outputs = Outputs::new(options.scene.program.force);
+    outputs.reads("the input", &options.input);
+    outputs.writes("--out", out, Manner::File);
+    outputs.check()?;
+    let source = Source::at(options.input.clone());
+    let mut draft = inputs::draft(&source, &options.scene, None, &mut outputs)?;
+    let places = draft.places().len();
+    if ending == "json" && is_plan(&options.input) {
+        draft = begun(&options.input, &draft, &options.scene, &mut outputs)?;
+    }
+    let text = match ending.as_str() {
+        "geojson" => format!("{:#}\n", draft.to_geojson()?),
+        _ => draft.clone().scenario()?.to_text(),
+    };
+    let written = write_file(out, text.as_bytes());
+    written.map_err(|error| Failure::Output(format!("{}: {error}", out.display())))?;
+    for note in draft.scenario()?.notes {
+        talk(&format!("note: {note}"));
+    }
+    let file = out.display().to_string();
+    tell(
+        options.scene.program.json,
+        || json!({"file": file, "places": places}),
+        || format!("{file}: the floor, and {places} place(s) that the plan names\n"),
+    )
+}
+
+/// A scenario with the exits, doors, zones and crowds of a plan.
+fn begun(
+    plan: &Path,
+    draft: &Draft,
+    scene: &SceneOptions,
+    outputs: &mut Outputs,
+) -> Result<Draft, Failure> {
+    let name = plan.file_name().unwrap_or_default().to_string_lossy();
+    let document: Value = beginning(&name, draft.places());
+    let settings = inputs::settings(scene, None, outputs)?;
+    let file = plan.with_extension("json");
+    Ok(Draft::read(
+        &document.to_string(),
+        &file.display().to_string(),
+        &settings,
+    )?)
+}
