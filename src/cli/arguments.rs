@@ -35,7 +35,7 @@ pub struct SceneOptions {
     /// longest_step_secs)
     #[arg(long, value_name = "SECS|auto")]
     pub time_step: Option<String>,
-    /// A floor plan that replaces the scenario's walkable area and obstacles: WKT, GeoJSON or JuPedSim XML
+    /// A floor plan that replaces the scenario's walkable area and obstacles: DXF, GeoJSON, WKT or JuPedSim XML
     #[arg(long, value_name = "FILE")]
     pub geometry: Option<PathBuf>,
     #[command(flatten)]

@@ -10,7 +10,7 @@ use lab::machine::main_memory;
 use lab::measure::Site;
 use runs::case::Source;
 use runs::outputs::Outputs;
-use scenario::floor_plan::{self, FloorPlan};
+use scenario::floor_plan::{self, FloorPlan, is_plan};
 use scenario::quote::shown;
 use scenario::trajectories::{self, ReadOptions, Tracks, Unit};
 use scenario::{Draft, Scenario, Setting};
@@ -32,10 +32,14 @@ pub fn scenario(
 ) -> Result<Scenario, Failure> {
     let draft = draft(source, scene, until, outputs)?;
     let is_default = draft.has_default_profile();
-    let (scenario, _) = draft.within(main_memory(), writing)?;
+    let of_plans = draft.notes().to_vec();
+    let (scenario, _) = draft.within(main_memory(), writing).inspect_err(|_| {
+        // How the plan was read may explain the error.
+        of_plans.iter().for_each(|note| talk(&format!("note: {note}")));
+    })?;
     if let Source::File(path) = source {
         outputs.reads("the scenario", path);
-        if is_default {
+        if is_default && !is_plan(path) {
             talk(DEFAULT_PROFILE_NOTE);
         }
     }

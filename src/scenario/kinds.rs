@@ -14,11 +14,11 @@ const ENDINGS: [(&[&str], &str); 3] = [
     ),
     (
         &["png", "jpg", "jpeg", "pdf", "svg", "gif"],
-        "a picture is not read: give the outlines as WKT, GeoJSON or JuPedSim XML",
+        "a picture is not read: give the outlines as DXF, GeoJSON, WKT or JuPedSim XML",
     ),
     (
         &["xlsx", "xls", "ods", "docx", "zip"],
-        "this kind of file is not read: scenarios are JSON, plans WKT, GeoJSON or JuPedSim XML",
+        "this kind of file is not read: scenarios are JSON, plans DXF, GeoJSON, WKT or JuPedSim XML",
     ),
 ];
 /// What trajectories and recordings are.

@@ -79,6 +79,11 @@ impl Draft {
         &self.need
     }
 
+    /// Notes on the files that it names.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
     /// Whether agents behave by the default profile: the scenario gives none.
     pub fn has_default_profile(&self) -> bool {
         self.keys.profile.is_none()
