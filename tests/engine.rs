@@ -20,6 +20,7 @@ mod distributions;
 mod door_routes;
 mod doors;
 mod doubts;
+mod dxf;
 mod enclosures;
 mod endings;
 mod entrances;

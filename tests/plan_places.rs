@@ -86,7 +86,10 @@ fn names_stand_for_the_geometry_of_the_plan() {
 #[test]
 fn a_corrected_drawing_needs_no_change_of_the_scenario() {
     let top = |wide: f64| load(wide, &keys()).unwrap().document["exits"][0]["line"][1].clone();
-    assert_eq!([1.2, 2.5].map(top), [json!([20.0, 6.2]), json!([20.0, 7.5])]);
+    assert_eq!(
+        [1.2, 2.5].map(top),
+        [json!([20.0, 6.2]), json!([20.0, 7.5])]
+    );
 }
 
 #[test]

@@ -35,7 +35,9 @@ pub fn scenario(
     let of_plans = draft.notes().to_vec();
     let (scenario, _) = draft.within(main_memory(), writing).inspect_err(|_| {
         // How the plan was read may explain the error.
-        of_plans.iter().for_each(|note| talk(&format!("note: {note}")));
+        of_plans
+            .iter()
+            .for_each(|note| talk(&format!("note: {note}")));
     })?;
     if let Source::File(path) = source {
         outputs.reads("the scenario", path);

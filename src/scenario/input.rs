@@ -66,7 +66,11 @@ pub fn standard_input() -> Result<String> {
     read.clone().map_err(|(kind, said)| Error::new(kind, said))
 }
 
-fn text_of(bytes: Vec<u8>) -> Result<String> {
+/// The text of a file's content, without a byte-order mark.
+///
+/// # Errors
+/// It is not UTF-8.
+pub fn text_of(bytes: Vec<u8>) -> Result<String> {
     let mut text = String::from_utf8(bytes)
         .map_err(|error| Error::new(ErrorKind::InvalidData, not_text(error.as_bytes())))?;
     text.drain(..text.len() - without_mark(&text).len());

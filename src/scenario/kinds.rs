@@ -9,8 +9,8 @@ use crate::trajectories;
 /// Endings of files that no command reads, with what they are.
 const ENDINGS: [(&[&str], &str); 3] = [
     (
-        &["dxf", "dwg", "ifc"],
-        "drawings of CAD programs are not read: make GeoJSON or WKT of it (docs/guide/recipes.md says how)",
+        &["dwg", "ifc"],
+        "this format of CAD programs is not read: save it as DXF",
     ),
     (
         &["png", "jpg", "jpeg", "pdf", "svg", "gif"],

@@ -56,7 +56,10 @@ const WORDS: [(Kind, &[&str]); 12] = [
             "barrier",
         ],
     ),
-    (Kind::Wall, &["wall", "partition", "fence", "railing"]),
+    (
+        Kind::Wall,
+        &["wall", "partition", "fence", "railing", "window", "glaz"],
+    ),
     (Kind::Door, &["door", "opening"]),
     (Kind::Exit, &["exit"]),
     (Kind::Entrance, &["entrance", "entry", "source"]),

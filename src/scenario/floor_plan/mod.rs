@@ -1,4 +1,4 @@
-//! Floor plans: walkable areas and obstacles from WKT, GeoJSON and JuPedSim's XML files.
+//! Floor plans: walkable areas, obstacles, walls and named places from WKT, GeoJSON, DXF and JuPedSim's XML files.
 //!
 //! | | WKT | GeoJSON |
 //! |---|---|---|
@@ -14,6 +14,7 @@
 use crate::input;
 use crate::kinds;
 mod boundary;
+mod dxf;
 mod error;
 mod geojson;
 mod idle;
@@ -71,10 +72,12 @@ pub struct FloorPlan {
     pub notes: Vec<String>,
 }
 
-/// Reads a file: GeoJSON if it begins with `{`, JuPedSim's XML if it begins with `<`, else WKT.
+/// Reads a file: DXF if its content says so, GeoJSON if it begins with `{`, JuPedSim's XML if it begins with `<`, else
+/// WKT.
 ///
 /// # Errors
-/// The file cannot be read, is neither format, or is not a valid floor plan. The message has the file and the place.
+/// The file cannot be read, is in no known format, or is not a valid floor plan. The message has the file and the
+/// place.
 pub fn read(path: &Path) -> Result<FloorPlan, FloorPlanError> {
     read_as(path, &Reading::default())
 }
@@ -84,14 +87,21 @@ pub fn read(path: &Path) -> Result<FloorPlan, FloorPlanError> {
 /// # Errors
 /// Those of [`read`].
 pub fn read_as(path: &Path, reading: &Reading) -> Result<FloorPlan, FloorPlanError> {
-    in_file(path, |text| FloorPlan::noted(drawn(text, false, reading)?))
+    in_file(path, |bytes| {
+        FloorPlan::noted(drawn(bytes, Some(path), false, reading)?)
+    })
 }
 
 /// Whether the name of a file is that of a floor plan.
 pub fn is_plan(path: &Path) -> bool {
-    let extension = path.extension().unwrap_or_default();
-    let mut plans = ["wkt", "geojson", "xml"].into_iter();
-    plans.any(|plan| extension.eq_ignore_ascii_case(plan))
+    let mut plans = ["wkt", "geojson", "xml", "dxf"].into_iter();
+    plans.any(|plan| has_ending(path, plan))
+}
+
+/// Whether the name of a file ends in `.` and `ending`, in any case.
+fn has_ending(path: &Path, ending: &str) -> bool {
+    path.extension()
+        .is_some_and(|own| own.eq_ignore_ascii_case(ending))
 }
 
 /// Reads a file in which every polygon is an obstacle.
@@ -107,10 +117,10 @@ pub fn read_obstacles(path: &Path) -> Result<FloorPlan, FloorPlanError> {
 /// # Errors
 /// Those of [`read`].
 pub fn read_obstacles_as(path: &Path, reading: &Reading) -> Result<FloorPlan, FloorPlanError> {
-    in_file(path, |text| {
+    in_file(path, |bytes| {
         let Drawn {
             mut shapes, notes, ..
-        } = drawn(text, true, reading)?;
+        } = drawn(bytes, Some(path), true, reading)?;
         let areas = shapes.iter_mut().filter(|shape| shape.form == Form::Area);
         for shape in areas {
             shape.kind = Kind::Obstacle;
@@ -126,7 +136,15 @@ pub fn read_obstacles_as(path: &Path, reading: &Reading) -> Result<FloorPlan, Fl
 /// # Errors
 /// Those of [`read`].
 pub fn parse(text: &str) -> Result<FloorPlan, FloorPlanError> {
-    FloorPlan::noted(drawn(text, false, &Reading::default())?)
+    parse_bytes(text.as_bytes(), &Reading::default())
+}
+
+/// Reads the content of a file, as [`read_as`] does.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn parse_bytes(bytes: &[u8], reading: &Reading) -> Result<FloorPlan, FloorPlanError> {
+    FloorPlan::noted(drawn(bytes, None, false, reading)?)
 }
 
 /// Reads well-known text, such as that in the `geometry` table of a trajectory file. All of it is walkable area.
@@ -137,10 +155,10 @@ pub fn parse_wkt(text: &str) -> Result<FloorPlan, FloorPlanError> {
     FloorPlan::noted(wkt::drawn(text)?)
 }
 
-/// Applies `parse` to a file's text; errors name the file.
+/// Applies `parse` to a file's content; errors name the file.
 fn in_file(
     path: &Path,
-    parse: impl Fn(&str) -> Result<FloorPlan, FloorPlanError>,
+    parse: impl Fn(&[u8]) -> Result<FloorPlan, FloorPlanError>,
 ) -> Result<FloorPlan, FloorPlanError> {
     let within = |error: FloorPlanError| FloorPlanError::File {
         path: path.to_owned(),
@@ -153,19 +171,39 @@ fn in_file(
         within(what.unwrap_or(error))
     };
     let unreadable = |error: std::io::Error| FloorPlanError::Unreadable(error.to_string());
-    let text = input::text(path).map_err(|error| explained(unreadable(error)))?;
-    parse(&text).map_err(explained)
+    let bytes = input::bytes(path, input::LONGEST_TEXT);
+    let bytes = bytes.map_err(|error| explained(unreadable(error)))?;
+    parse(&bytes).map_err(explained)
 }
 
-/// What GeoJSON, XML or WKT has. If `all_obstacles`, the kinds of features do not matter.
-fn drawn(text: &str, all_obstacles: bool, reading: &Reading) -> Result<Drawn, FloorPlanError> {
+/// What a file has. If `all_obstacles`, the kinds of features do not matter.
+fn drawn(
+    bytes: &[u8],
+    path: Option<&Path>,
+    all_obstacles: bool,
+    reading: &Reading,
+) -> Result<Drawn, FloorPlanError> {
+    if is_drawing(bytes, path) {
+        return dxf::drawn(bytes, reading);
+    }
+    let text = input::text_of(bytes.to_vec());
+    let text = text.map_err(|error| FloorPlanError::Unreadable(error.to_string()))?;
     let mut drawn = match text.trim_start().bytes().next() {
-        Some(b'{') => geojson::drawn(text, all_obstacles)?,
+        Some(b'{') => geojson::drawn(&text, all_obstacles)?,
         Some(b'<') => xml::drawn(text.trim_start(), reading)?,
-        _ => wkt::drawn(text)?,
+        _ => wkt::drawn(&text)?,
     };
     drawn.place(reading)?;
     Ok(drawn)
+}
+
+/// Whether a file is a drawing: its content says so, or only its name, and it is in no other known format.
+fn is_drawing(bytes: &[u8], path: Option<&Path>) -> bool {
+    let is_named = path.is_some_and(|path| has_ending(path, "dxf"));
+    let first = bytes.trim_ascii_start().first();
+    let may_be_other =
+        first.is_some_and(|first| first.is_ascii_alphabetic() || b"{<".contains(first));
+    dxf::is_dxf(bytes) || dxf::is_dwg(bytes) || is_named && !may_be_other
 }
 
 impl FloorPlan {

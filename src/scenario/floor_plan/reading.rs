@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::error::FloorPlanError;
 use super::kind::Kind;
 use super::shape::Shape;
-use super::units;
+use super::units::Unit;
 
 /// How the files of `walkable_area` and `obstacles` are read: what they do not say themselves
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -80,7 +80,8 @@ impl Drawn {
     /// # Errors
     /// The unit is unknown.
     pub fn place(&mut self, reading: &Reading) -> Result<(), FloorPlanError> {
-        let typed = reading.unit.as_deref().map(units::named).transpose()?;
+        let typed = reading.unit.as_deref().map(Unit::named).transpose()?;
+        let typed = typed.map(|unit| unit.length);
         let declared = self.unit.take().filter(|_| typed.is_none());
         if let Some((name, _)) = &declared {
             self.notes.push(format!(

@@ -8,38 +8,65 @@ use super::error::FloorPlanError;
 use crate::error::quote::shown;
 use crate::input::embedded;
 
-/// The units of the key `plan.unit`, and their meters.
-const UNITS: [(&str, f64); 5] = [
-    ("m", 1.0),
-    ("cm", 0.01),
-    ("mm", 0.001),
-    ("ft", 0.3048),
-    ("in", 0.0254),
+/// Units of length.
+pub const UNITS: [Unit; 8] = [
+    Unit::new("in", "inches", 1, 0.0254),
+    Unit::new("ft", "feet", 2, 0.3048),
+    Unit::new("mm", "millimeters", 4, 0.001),
+    Unit::new("cm", "centimeters", 5, 0.01),
+    Unit::new("m", "meters", 6, 1.0),
+    Unit::new("km", "kilometers", 7, 1000.0),
+    Unit::new("yd", "yards", 10, 0.9144),
+    Unit::new("dm", "decimeters", 14, 0.1),
 ];
 
-/// The meters of a unit that a scenario names.
-pub fn named(word: &str) -> Result<f64, FloorPlanError> {
-    let found = UNITS.iter().find(|(name, _)| *name == word.trim());
-    found
-        .map(|(_, meters)| *meters)
-        .ok_or_else(|| FloorPlanError::Geometry {
+/// A unit of length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// Its name in the key `plan.unit`.
+    pub name: &'static str,
+    pub plural: &'static str,
+    /// Its number in the header of drawings.
+    pub number: i64,
+    /// Its length, meters.
+    pub length: f64,
+}
+
+impl Unit {
+    const fn new(name: &'static str, plural: &'static str, number: i64, length: f64) -> Self {
+        Self {
+            name,
+            plural,
+            number,
+            length,
+        }
+    }
+
+    /// The unit that a scenario names.
+    ///
+    /// # Errors
+    /// It is unknown.
+    pub fn named(word: &str) -> Result<Self, FloorPlanError> {
+        let found = UNITS.into_iter().find(|unit| unit.name == word.trim());
+        found.ok_or_else(|| FloorPlanError::Geometry {
             place: "plan.unit".to_owned(),
             reason: format!(
                 "`{}` is no unit of plans; write m, cm, mm, ft or in",
                 shown(word)
             ),
         })
+    }
 }
 
 /// The units of the coordinate systems of EPSG's registry that are not in meters.
 #[derive(Deserialize)]
 struct Systems {
     degrees: Vec<Codes>,
-    units: Vec<Unit>,
+    units: Vec<OfSystems>,
 }
 
 #[derive(Deserialize)]
-struct Unit {
+struct OfSystems {
     name: String,
     meters: f64,
     codes: Vec<Codes>,
