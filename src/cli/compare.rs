@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::arguments::ReplaceOptions;
 use super::documents::DocumentOptions;
 use super::failure::Failure;
-use super::inputs::{read_options, tracks};
+use super::inputs::{FPS, read_options, tracks};
 use super::terminal::talk;
 use super::values::frame_rate;
 use lab::differences::{NotAReport, names as file_names, of_reports, of_tracks};
@@ -20,7 +20,7 @@ use runs::outputs::Outputs;
 use scenario::input;
 use scenario::kinds::is_scenario;
 use scenario::quote::shown;
-use scenario::trajectories::{ReadOptions, Tracks, endings};
+use scenario::trajectories::{ReadOptions, Tracks, UNITS, endings};
 
 #[derive(Args)]
 pub struct CompareOptions {
@@ -32,7 +32,7 @@ pub struct CompareOptions {
     /// B: a file of the same kind; a result and a recording can be compared, too
     pub b: PathBuf,
     /// Unit of the coordinates in trajectory files [default: that of the file, else m]
-    #[arg(long, value_parser = PossibleValuesParser::new(["m", "cm"]))]
+    #[arg(long, value_parser = PossibleValuesParser::new(UNITS))]
     pub unit: Option<String>,
     /// Frames per second of trajectory files [default: that of the file]
     #[arg(long, value_name = "N", value_parser = frame_rate)]
@@ -128,7 +128,7 @@ fn open(path: &Path, options: &ReadOptions) -> Result<Input, Failure> {
             report.ok_or_else(|| refused(reason.to_owned()))?
         }
         _ => {
-            let tracks = tracks(path, options)?;
+            let tracks = tracks(path, options, FPS)?;
             return Ok(Input::Tracks(Box::new(tracks)));
         }
     };

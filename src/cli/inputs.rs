@@ -135,10 +135,17 @@ pub fn read_options(unit: &Option<String>, fps: Option<f64>) -> ReadOptions {
     ReadOptions { unit, fps }
 }
 
-/// Reads trajectories.
-pub fn tracks(path: &Path, options: &ReadOptions) -> Result<Tracks, Failure> {
-    let tracks = trajectories::read(path, options)?;
+/// The option for the frame rate of trajectories.
+pub const FPS: &str = "--fps";
+/// The same of commands that have another rate, too.
+pub const TRAJECTORY_FPS: &str = "--trajectory-fps";
+
+/// Reads trajectories for a command with this option for their frame rate.
+pub fn tracks(path: &Path, options: &ReadOptions, rate_option: &str) -> Result<Tracks, Failure> {
+    let read = trajectories::read(path, options);
+    let tracks = read.map_err(|error| error.with_rate_option(rate_option))?;
     for note in &tracks.notes {
+        let note = note.replace(FPS, rate_option);
         talk(&format!("note: {}: {note}", path.display()));
     }
     Ok(tracks)

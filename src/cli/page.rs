@@ -17,7 +17,7 @@ use output::page::{EmbeddedViewer, Moment, Page, PageOptions as Content};
 use output::picture::{Crowd, Picture};
 use output::results::{pairs, reproducible, results, section};
 use runs::outputs::{Manner, Outputs};
-use scenario::trajectories::endings;
+use scenario::trajectories::{UNITS, endings};
 
 /// Where densities come from, in words.
 const DENSITIES: &str =
@@ -37,7 +37,7 @@ pub struct PageOptions {
     #[arg(long, value_name = "FILE|none")]
     pub geometry: Option<PathBuf>,
     /// Unit of the coordinates in a trajectory file [default: that of the file, else m]
-    #[arg(long, value_parser = PossibleValuesParser::new(["m", "cm"]))]
+    #[arg(long, value_parser = PossibleValuesParser::new(UNITS))]
     pub unit: Option<String>,
     /// Frame rate of a trajectory file that does not have it
     #[arg(long, value_name = "N", value_parser = frame_rate)]

@@ -9,7 +9,7 @@ use crate::cli::arguments::SceneOptions;
 use crate::cli::values::{
     Width, dpi, frame_rate, millimeters, picture, positive_seconds, range, seconds, width,
 };
-use scenario::trajectories::endings;
+use scenario::trajectories::{UNITS, endings};
 
 #[derive(Args)]
 pub struct DrawOptions {
@@ -82,7 +82,7 @@ pub struct DrawOptions {
     #[arg(long, value_name = "DIR")]
     pub page_viewer: Option<PathBuf>,
     /// Unit of the coordinates in a trajectory file [default: that of the file, else m]
-    #[arg(long, value_parser = PossibleValuesParser::new(["m", "cm"]))]
+    #[arg(long, value_parser = PossibleValuesParser::new(UNITS))]
     pub unit: Option<String>,
     /// Frames per second of a trajectory file [default: that of the file]
     #[arg(long, value_name = "N", value_parser = frame_rate)]

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::{DrawOptions, extension, print, refuse_settings};
 use crate::cli::failure::Failure;
-use crate::cli::inputs::{read_options, scenario, tracks};
+use crate::cli::inputs::{TRAJECTORY_FPS, read_options, scenario, tracks};
 use crate::cli::moment;
 use crate::cli::terminal::tell;
 use lab::egress::Egress;
@@ -32,7 +32,8 @@ pub fn draw(options: &DrawOptions, out: &Path, mut outputs: Outputs) -> Result<(
             outputs.check()?;
             let read = read_options(&options.unit, options.trajectory_fps);
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-            (stem.into_owned(), Egress::of_tracks(&tracks(path, &read)?))
+            let tracks = tracks(path, &read, TRAJECTORY_FPS)?;
+            (stem.into_owned(), Egress::of_tracks(&tracks))
         }
         _ => simulated(options, outputs)?,
     };

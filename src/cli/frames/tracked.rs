@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Film, Over, Run};
 use crate::cli::failure::Failure;
-use crate::cli::inputs;
+use crate::cli::inputs::{self, TRAJECTORY_FPS};
 use engine::agents::REFERENCE_RADIUS;
 use engine::math::Vector;
 use engine::scene::Scene;
@@ -35,10 +35,18 @@ pub fn open(
     if let Some(plan) = geometry.filter(|plan| plan.as_os_str() != inputs::NO_WALLS) {
         outputs.reads("--geometry", plan);
     }
-    let tracks = inputs::tracks(path, options).map_err(|failure| match failure {
-        Failure::Read(error) => Failure::Read(error.with_rate_option("--trajectory-fps")),
-        other => other,
-    })?;
+    let own = inputs::tracks(path, options, TRAJECTORY_FPS)?;
+    let mut columns = columns(path, wanted, &own)?;
+    let tracks = own.together().into_owned();
+    if tracks.len() != own.len() || tracks.frames != own.frames {
+        let rows: Vec<usize> = (0..tracks.len()).map(|row| tracks.source(row)).collect();
+        for column in columns
+            .iter_mut()
+            .filter(|column| !column.values.is_empty())
+        {
+            column.values = rows.iter().map(|&row| column.values[row]).collect();
+        }
+    }
     let site = inputs::site(path, geometry, &tracks)?;
     let scene = Scene::with_obstacles(site.walls.obstacles().to_vec());
     let corners: Vec<Vector> = scene.walls.iter().map(|wall| wall.start).collect();
@@ -49,7 +57,7 @@ pub fn open(
     let tracked = Tracked {
         path: path.to_owned(),
         velocities: speed::velocities(&tracks, speed::FRAMES),
-        columns: columns(path, wanted, &tracks)?,
+        columns,
         tracks,
     };
     let title = path.file_stem().unwrap_or_default().to_string_lossy();

@@ -12,7 +12,7 @@ use crate::cli::values::{
 };
 use analysis::crossing::{Line, Passages};
 use engine::scene::Region;
-use scenario::trajectories::endings;
+use scenario::trajectories::{UNITS, endings};
 
 #[derive(Args)]
 pub struct MeasureOptions {
@@ -27,7 +27,7 @@ pub struct MeasureOptions {
     #[arg(long, value_name = "FILE")]
     pub geometry: Option<PathBuf>,
     /// Unit of the coordinates [default: that of the file, else m]
-    #[arg(long, value_parser = PossibleValuesParser::new(["m", "cm"]))]
+    #[arg(long, value_parser = PossibleValuesParser::new(UNITS))]
     pub unit: Option<String>,
     /// Frames per second [default: that of the file]
     #[arg(long, value_name = "N", value_parser = frame_rate)]

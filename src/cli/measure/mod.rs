@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use super::arguments::use_threads;
 use super::documents::add_folder;
 use super::failure::Failure;
-use super::inputs::{in_order, read_options, site, tracks};
+use super::inputs::{FPS, in_order, read_options, site, tracks};
 use super::terminal::talk;
 use super::watch::bar;
 use analysis::site::Site;
@@ -32,7 +32,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     }
     check_outputs(options, &folder)?;
     let read = read_options(&options.unit, options.fps);
-    let tracks = tracks(&options.trajectory, &read)?;
+    let tracks = tracks(&options.trajectory, &read, FPS)?;
     let site = site(&options.trajectory, options.geometry.as_deref(), &tracks)?;
     let what = what(options, &tracks);
     check(&tracks, &site, &what)?;

@@ -83,7 +83,7 @@ impl Crossings {
                 if !(from..=until).contains(&time) {
                     continue;
                 }
-                if frame - left != tracks.step {
+                if tracks.is_gap(p, frame - left) {
                     across_gaps += 1;
                     continue;
                 }

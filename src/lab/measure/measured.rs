@@ -69,16 +69,18 @@ pub struct Measured {
     pub departures: Departures,
 }
 
-/// Measures everything, and passes the frames to `take` in batches.
+/// Measures everything, and passes the frames to `take` in batches. Frames have all people, whose rows may be in frames
+/// of their own; crossings are those between rows.
 ///
 /// # Errors
 /// There is nothing to measure, or `take` fails.
 pub fn measure<E: From<MeasureError>>(
-    tracks: &Tracks,
+    own: &Tracks,
     site: &Site,
     options: &Options,
     mut take: impl FnMut(&[Moment]) -> Result<(), E>,
 ) -> Result<Measured, E> {
+    let tracks = &*own.together();
     let chosen = chosen(tracks, options)?;
     let mut fields = Fields::new(grid(tracks, options, chosen.clone())?, site, options.kernel);
     let rows = Rows {
@@ -117,7 +119,7 @@ pub fn measure<E: From<MeasureError>>(
     }
     overview.people = seen.into_iter().filter(|&seen| seen).count() as u64;
     let lines = options.lines.par_iter().enumerate();
-    let crossings = lines.map(|(k, &line)| Crossings::of(tracks, k + 1, line, options.times));
+    let crossings = lines.map(|(k, &line)| Crossings::of(own, k + 1, line, options.times));
     Ok(Measured {
         overview,
         fields,

@@ -186,10 +186,7 @@ impl Field {
         let whole = match self.kind {
             Kind::Signed => Some(self.integer(record)),
             Kind::Unsigned => Some(self.integer(record)).filter(|&number| number >= 0),
-            // Floating-point numbers hold whole numbers up to 2^53.
-            Kind::Float => Some(self.number(record))
-                .filter(|number| number.fract() == 0.0 && number.abs() <= (1_u64 << 53) as f64)
-                .map(|number| number as i64),
+            Kind::Float => super::whole(self.number(record)),
         };
         whole.ok_or_else(|| format!("{} is not a whole number", self.name))
     }

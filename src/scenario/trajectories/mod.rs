@@ -4,40 +4,46 @@
 //! |---|---|---|
 //! | SQLite | JuPedSim 1 and 2, the sandbox | `trajectory_data`, `fps`, the walkable area, `mass` if present |
 //! | HDF5 | Pedestrian Dynamics Data Archive, PedPy | dataset `trajectory`, its `fps`, `wkt_geometry` |
-//! | `.csv` | the sandbox, others | by name: `id`, `frame`, `x` and `y` or `pos_x` and `pos_y`; `time`, `mass` |
-//! | other text | PeTrack, Pedestrian Dynamics Data Archive | `id frame x y`, or by the names in a header |
+//! | text with `,` or `;` | the sandbox, Pathfinder, Viswalk, others | by name: `id`, `frame` or `time`, `x`, `y`, `mass` |
+//! | text with blanks | PeTrack, Pedestrian Dynamics Data Archive | `id frame x y`, or by the names in a header |
+//! | text with eight columns | ETH and UCY, `obsmat.txt` | frame, id, x, z, y, velocities |
 //!
-//! Results are in meters and seconds. Frame f is at the time f / fps.
+//! Results are in meters and seconds. Frame f is at the time f / fps. A person's rows are a number of frames apart, and
+//! people may have frames of their own: [`Tracks::together`] has all people in the same frames.
 
-use crate::error::quote::shown;
-use crate::input::other_than_text;
 mod columns;
 mod error;
 #[cfg(feature = "program")]
 mod hdf5;
+mod jumps;
 mod line;
+mod order;
 mod places;
 #[cfg(feature = "program")]
 mod sqlite;
+mod steps;
 mod text;
+mod times;
+mod together;
 mod tracks;
+mod unit;
 
 pub use columns::{Column, columns};
 pub use error::ReadError;
 pub use tracks::{TOO_FAST, Tracks};
+pub use unit::{UNITS, Unit};
 
-use std::fmt::{self, Display, Formatter};
 use std::fs::File;
 use std::io::Read;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::error::quote::shown;
+use crate::input::other_than_text;
 
 /// The endings of trajectory files. A command that reads scenarios, too, tells both apart by them; others read files
 /// of any name.
-pub const ENDINGS: [&str; 6] = ["sqlite", "db", "h5", "hdf5", "csv", "txt"];
+pub const ENDINGS: [&str; 7] = ["sqlite", "db", "h5", "hdf5", "csv", "txt", "pp"];
 
 /// The first bytes of an SQLite file.
 const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";
@@ -48,43 +54,6 @@ const RECORDING_MAGIC: &[u8] = b"RRF";
 
 /// Valid frame rates, frames per second.
 pub const FRAME_RATES: RangeInclusive<f64> = 1e-6..=1e6;
-
-/// The unit of the coordinates in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[schemars(inline)]
-pub enum Unit {
-    /// Meters.
-    #[serde(rename = "m")]
-    Meter,
-    /// Centimeters.
-    #[serde(rename = "cm")]
-    Centimeter,
-}
-
-impl Unit {
-    /// Its length in meters.
-    pub fn meters(self) -> f64 {
-        match self {
-            Self::Meter => 1.0,
-            Self::Centimeter => 0.01,
-        }
-    }
-
-    /// The unit called `name`.
-    pub fn named(name: &str) -> Option<Self> {
-        let mut all = [Self::Meter, Self::Centimeter].into_iter();
-        all.find(|unit| unit.to_string() == name)
-    }
-}
-
-impl Display for Unit {
-    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::Meter => "m",
-            Self::Centimeter => "cm",
-        })
-    }
-}
 
 /// Information that a file may lack; it takes precedence over the file's.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -193,15 +162,19 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     }
 }
 
-/// Reads the trajectories in a text. Messages name `path`, and its extension gives the format.
+/// Reads the trajectories in a text. Messages name `path`, whose ending says what separates columns if the text does
+/// not.
 ///
 /// # Errors
 /// Same as [`read`].
 pub fn read_text(path: &Path, text: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {
-    match Format::of(path, b"") {
-        Format::Csv => text::read_csv(path, text, options),
-        Format::Text | Format::Sqlite | Format::Hdf5 => text::read_text(path, text, options),
-    }
+    text::read(path, text, Format::of(path, b"") == Format::Csv, options)
+}
+
+/// A whole number that some programs write as a floating-point number, which is exact up to 2^53.
+fn whole(number: f64) -> Option<i64> {
+    let is_whole = number.fract() == 0.0 && number.abs() <= tracks::LAST_FRAME as f64;
+    is_whole.then_some(number as i64)
 }
 
 /// Parses the frame rate of a file and checks its range.

@@ -65,9 +65,9 @@ pub fn names(path: &Path) -> rusqlite::Result<Vec<String>> {
     columns(&connection, "trajectory_data")
 }
 
-/// The person, the frame and the values of some columns of each row; NaN where a value is not a number.
-pub fn values(path: &Path, names: &[&str]) -> Result<Vec<(i64, i64, Vec<f64>)>, ReadError> {
-    let read = || -> rusqlite::Result<Vec<(i64, i64, Vec<f64>)>> {
+/// The id and the frame, and the values of some columns of each row; NaN where a value is not a number.
+pub fn values(path: &Path, names: &[&str]) -> Result<Vec<((i64, i64), Vec<f64>)>, ReadError> {
+    let read = || -> rusqlite::Result<Vec<((i64, i64), Vec<f64>)>> {
         let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
         let own = names.iter();
         let quoted = own.map(|name| format!("\"{}\"", name.replace('"', "\"\"")));
@@ -85,11 +85,12 @@ pub fn values(path: &Path, names: &[&str]) -> Result<Vec<(i64, i64, Vec<f64>)>, 
                     _ => f64::NAN,
                 })
             });
-            Ok((
-                row.get(0)?,
-                row.get(1)?,
-                values.collect::<rusqlite::Result<_>>()?,
-            ))
+            // `read` has refused other ids and frames.
+            let whole = |column: usize| -> rusqlite::Result<i64> {
+                Ok(whole(row.get_ref(column)?).unwrap_or(i64::MIN))
+            };
+            let key = (whole(0)?, whole(1)?);
+            Ok((key, values.collect::<rusqlite::Result<_>>()?))
         };
         query.query_map([], row)?.collect()
     };
@@ -98,8 +99,8 @@ pub fn values(path: &Path, names: &[&str]) -> Result<Vec<(i64, i64, Vec<f64>)>, 
 
 fn entry(row: &Row, line: u64) -> Result<Entry, String> {
     let whole = |column: usize, what: &str| {
-        row.get::<_, i64>(column)
-            .map_err(|_| format!("{what} is not a whole number"))
+        let value = row.get_ref(column).ok().and_then(whole);
+        value.ok_or_else(|| format!("{what} is not a whole number"))
     };
     let finite = |column: usize, what: &str| match row.get_ref(column) {
         Ok(ValueRef::Real(number)) if number.is_finite() => Ok(number),
@@ -113,6 +114,15 @@ fn entry(row: &Row, line: u64) -> Result<Entry, String> {
         mass: finite(4, "mass")?,
         line,
     })
+}
+
+/// A whole number, also as the floating-point number as which pandas may write it.
+fn whole(value: ValueRef) -> Option<i64> {
+    match value {
+        ValueRef::Integer(number) => Some(number),
+        ValueRef::Real(number) => super::whole(number),
+        _ => None,
+    }
 }
 
 /// The names of a table's columns; empty if there is no such table.

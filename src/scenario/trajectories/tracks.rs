@@ -8,14 +8,15 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::error::ReadError;
-use super::{ReadOptions, Unit};
+use super::{ReadOptions, Unit, order};
 use engine::math::Vector;
 
-/// If the median speed is above this, m/s, the unit is probably wrong.
-pub const TOO_FAST: f64 = 10.0;
+/// If the median speed is above this, m/s, the unit, the frame rate or the order of the columns is wrong: a crowd may
+/// run, but not half of it so fast.
+pub const TOO_FAST: f64 = 5.0;
 
 /// Frame numbers up to this magnitude are exact in double precision.
-const LAST_FRAME: i64 = 1 << 53;
+pub const LAST_FRAME: i64 = 1 << 53;
 /// Largest magnitude of x and y, meters. It covers projected Earth coordinates, and squares keep enough digits.
 const FARTHEST: f64 = 1e9;
 /// Largest mass.
@@ -66,6 +67,10 @@ pub struct Contents {
     pub walkable: Vec<String>,
     /// The word for an entry's position in the file: line or row.
     pub place: &'static str,
+    /// Whether the file does not name its columns.
+    pub is_unnamed: bool,
+    /// Notes on how the file is read.
+    pub notes: Vec<String>,
 }
 
 impl Contents {
@@ -81,14 +86,13 @@ impl Contents {
             "line" => ReadError::line(path, line, problem),
             _ => ReadError::file(path, format!("{place} {line}: {problem}")),
         };
-        let entries = &mut self.entries;
-        for entry in &*entries {
+        for entry in &self.entries {
             let checked = entry.check(entry.position * meters);
             checked.map_err(|problem| refused(entry.line, problem))?;
         }
-        entries.par_sort_unstable_by_key(|entry| (entry.frame, entry.id, entry.line));
+        self.order();
         let same = |pair: &&[Entry]| (pair[0].frame, pair[0].id) == (pair[1].frame, pair[1].id);
-        if let Some(pair) = entries.windows(2).find(same) {
+        if let Some(pair) = self.entries.windows(2).find(same) {
             let problem = format!(
                 "person {} is in frame {} already, by {place} {}; each may be there once: remove one",
                 pair[1].id, pair[1].frame, pair[0].line
@@ -97,6 +101,12 @@ impl Contents {
         }
         Ok(())
     }
+
+    /// Sorts all entries by frame, then by id.
+    pub(super) fn order(&mut self) {
+        let entries = &mut self.entries;
+        entries.par_sort_unstable_by_key(|entry| (entry.frame, entry.id, entry.line));
+    }
 }
 
 /// Trajectories: one row per person and frame, sorted by frame, then by id.
@@ -104,7 +114,7 @@ impl Contents {
 pub struct Tracks {
     /// Frame numbers per second.
     pub fps: f64,
-    /// Difference between the numbers of consecutive recorded frames, usually 1.
+    /// The most common difference between the frame numbers of a person's consecutive rows, usually 1.
     pub step: i64,
     /// The unit of the file's coordinates, which are converted to meters; `None`: not known, and meters are taken.
     pub unit: Option<Unit>,
@@ -126,6 +136,12 @@ pub struct Tracks {
     starts: Vec<usize>,
     /// The rows of each person, by frame.
     by_person: Vec<Vec<u32>>,
+    /// The line or row in the file of each row, from 1.
+    pub(super) lines: Vec<u64>,
+    /// The ids in the file of people who have others here.
+    pub(super) own_ids: BTreeMap<i64, i64>,
+    /// The steps of people who have another one than [`step`](Self::step).
+    pub(super) steps: BTreeMap<u32, i64>,
 }
 
 impl Tracks {
@@ -142,7 +158,7 @@ impl Tracks {
             let problem = "more than 4,294,967,295 rows; split it";
             return Err(ReadError::file(path, problem));
         }
-        let mut notes = Vec::new();
+        let mut notes = std::mem::take(&mut contents.notes);
         let fps = taken("fps", options.fps, contents.fps, &mut notes).ok_or_else(|| {
             let problem = "it has no frame rate (a line like `# framerate: 25`); give --fps";
             ReadError::file(path, problem)
@@ -154,16 +170,30 @@ impl Tracks {
         }
         contents.unit = unit;
         contents.sort(path)?;
-        let mut tracks = Self::of_sorted(contents, fps);
-        let steps = tracks.steps();
-        tracks.step = tracks.most_common_step(&steps);
+        let mut tracks = Self::of_sorted(&contents, fps);
+        if contents.is_unnamed
+            && let Some(other) = order::frame_first(&tracks, &mut contents)
+        {
+            tracks = other;
+        }
+        notes.append(&mut contents.notes);
+        let speed = tracks.median_speed();
+        notes.extend(tracks.note_speed(speed));
+        if speed <= TOO_FAST
+            && let Some((parts, note)) = tracks.parted(&mut contents)
+        {
+            notes.push(note);
+            tracks = parts.unwrap_or(tracks);
+        }
+        tracks.find_steps();
+        tracks.walkable = contents.walkable;
         tracks.notes = notes;
-        tracks.note_steps(steps);
+        tracks.note_steps();
         Ok(tracks)
     }
 
     /// The tracks of checked and sorted content, as if each frame were recorded.
-    fn of_sorted(contents: Contents, fps: f64) -> Self {
+    pub(super) fn of_sorted(contents: &Contents, fps: f64) -> Self {
         let (entries, meters) = (&contents.entries, contents.meters());
         let mut ids: Vec<i64> = entries.iter().map(|entry| entry.id).collect();
         ids.par_sort_unstable();
@@ -192,38 +222,14 @@ impl Tracks {
             person,
             position: places.collect(),
             mass: masses.map(|entry| entry.mass).collect(),
-            walkable: contents.walkable,
+            walkable: Vec::new(),
             notes: Vec::new(),
             starts,
             by_person,
             ids,
-        }
-    }
-
-    /// Adds notes on steps between frames, on gaps, and on speeds that no person has.
-    fn note_steps(&mut self, steps: BTreeMap<i64, u64>) {
-        if self.step != 1 {
-            let note = format!("frames are numbered in steps of {}", self.step);
-            self.notes.push(note);
-        }
-        let longer = steps.into_iter().filter(|&(step, _)| step != self.step);
-        let (longest, gaps): (Vec<i64>, Vec<u64>) = longer.unzip();
-        if let Some(&longest) = longest.last() {
-            self.notes.push(format!(
-                "{} gap(s) in which a person is missing, the longest {:.2} s; no motion is measured across",
-                gaps.iter().sum::<u64>(),
-                self.time(longest)
-            ));
-        }
-        let empty = self.span() - self.frames.len() as u64;
-        if empty > 0 {
-            let note = format!("{empty} frame(s) contain no persons; they count as empty");
-            self.notes.push(note);
-        }
-        if self.unit.is_none() && self.median_speed() > TOO_FAST {
-            self.notes.push(format!(
-                "half of all steps are faster than {TOO_FAST} m/s; are these centimeters? then give --unit cm"
-            ));
+            lines: entries.iter().map(|entry| entry.line).collect(),
+            own_ids: BTreeMap::new(),
+            steps: BTreeMap::new(),
         }
     }
 
@@ -247,6 +253,12 @@ impl Tracks {
         &self.by_person[p]
     }
 
+    /// The id in the file of the person of a row.
+    pub(super) fn own_id(&self, row: usize) -> i64 {
+        let id = self.ids[self.person[row] as usize];
+        self.own_ids.get(&id).copied().unwrap_or(id)
+    }
+
     /// The frame of a row.
     pub fn frame_of(&self, row: usize) -> i64 {
         self.frames[self.starts.partition_point(|&start| start <= row) - 1]
@@ -265,52 +277,6 @@ impl Tracks {
     /// The mass of the person of a row.
     pub fn mass_of(&self, row: usize) -> f64 {
         self.mass.get(row).copied().unwrap_or(1.0)
-    }
-
-    /// The number of frames from the first to the last, including empty frames.
-    pub fn span(&self) -> u64 {
-        match (self.frames.first(), self.frames.last()) {
-            (Some(first), Some(last)) => ((last - first) / self.step) as u64 + 1,
-            _ => 0,
-        }
-    }
-
-    /// Counts the differences between consecutive frames of the same person.
-    fn steps(&self) -> BTreeMap<i64, u64> {
-        let frames = self.frames.iter().enumerate();
-        let of_rows = frames.flat_map(|(k, &frame)| self.rows(k).map(move |_| frame));
-        let frame_of: Vec<i64> = of_rows.collect();
-        let mut steps = BTreeMap::new();
-        for pair in self.by_person.iter().flat_map(|rows| rows.windows(2)) {
-            let step = frame_of[pair[1] as usize] - frame_of[pair[0] as usize];
-            *steps.entry(step).or_insert(0) += 1;
-        }
-        steps
-    }
-
-    /// The most common step, if it divides all differences between frames. Otherwise 1: a camera missed frames.
-    fn most_common_step(&self, steps: &BTreeMap<i64, u64>) -> i64 {
-        let most = steps.iter().max_by_key(|&(step, count)| (count, -step));
-        let common = most.map_or(1, |(&step, _)| step);
-        let first = self.frames[0];
-        let mut frames = self.frames.iter();
-        let fits = frames.all(|frame| (frame - first) % common == 0);
-        if fits { common } else { 1 }
-    }
-
-    /// The median speed over all steps from a frame to the next, m/s; 0 without steps.
-    pub fn median_speed(&self) -> f64 {
-        let steps = self.by_person.iter().flat_map(|rows| rows.windows(2));
-        let speed = |pair: &[u32]| {
-            let [from, to] = [pair[0], pair[1]].map(|row| self.position[row as usize]);
-            (to - from).norm() / self.interval()
-        };
-        let mut speeds: Vec<f64> = steps.map(speed).collect();
-        if speeds.is_empty() {
-            return 0.0;
-        }
-        let middle = speeds.len() / 2;
-        *speeds.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 }
 

@@ -1,5 +1,9 @@
 //! Reading whole files and lines, with limits on their length.
 
+mod letters;
+
+pub use letters::Letters;
+
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
@@ -29,18 +33,10 @@ pub fn embedded<T: Deserialize<'static>>(file: &str, text: &'static str) -> T {
         .unwrap_or_else(|error| panic!("{file}, which is built into the program: {error}"))
 }
 
-/// The byte-order mark with which some editors begin a text.
-const MARK: char = '\u{feff}';
-
-/// A text without a byte-order mark at its beginning.
-pub fn without_mark(text: &str) -> &str {
-    text.strip_prefix(MARK).unwrap_or(text)
-}
-
-/// Reads a whole text file, without a byte-order mark.
+/// Reads a whole text file in UTF-8 or UTF-16, without a byte-order mark.
 ///
 /// # Errors
-/// The file cannot be read, has more than [`LONGEST_TEXT`] bytes, or is not UTF-8.
+/// The file cannot be read, has more than [`LONGEST_TEXT`] bytes, or is not text.
 pub fn text(path: &Path) -> Result<String> {
     text_of(bytes(path, LONGEST_TEXT)?)
 }
@@ -66,29 +62,25 @@ pub fn standard_input() -> Result<String> {
     read.clone().map_err(|(kind, said)| Error::new(kind, said))
 }
 
-/// The text of a file's content, without a byte-order mark.
+/// The text of a file's content, without a byte-order mark; UTF-16 becomes UTF-8.
 ///
 /// # Errors
-/// It is not UTF-8.
+/// It is neither UTF-8 nor UTF-16.
 pub fn text_of(bytes: Vec<u8>) -> Result<String> {
-    let mut text = String::from_utf8(bytes)
-        .map_err(|error| Error::new(ErrorKind::InvalidData, not_text(error.as_bytes())))?;
-    text.drain(..text.len() - without_mark(&text).len());
-    Ok(text)
+    if let Some(other) = other_than_text(&bytes) {
+        return Err(Error::new(ErrorKind::InvalidData, other));
+    }
+    let letters = rest(Letters::new(bytes.as_slice()), u64::MAX - 1)?;
+    let not_text = |_| Error::new(ErrorKind::InvalidData, "not UTF-8 text; save it as UTF-8");
+    String::from_utf8(letters).map_err(not_text)
 }
 
-/// What bytes are that are not UTF-8, by their beginning.
-fn not_text(bytes: &[u8]) -> &'static str {
-    other_than_text(bytes).unwrap_or("not UTF-8 text; save it as UTF-8")
-}
-
-/// What a file is that is no UTF-8 text, if its beginning says so.
+/// What a file is that is neither UTF-8 nor UTF-16 text, if its beginning says so.
 pub fn other_than_text(start: &[u8]) -> Option<&'static str> {
     match start {
         [0x1f, 0x8b, ..] => Some("a file compressed by gzip, not text; unpack it"),
         [b'P', b'K', 3, 4, ..] => Some("a zip archive, not text; unpack it"),
         [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => Some("UTF-32 text; save it as UTF-8"),
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Some("UTF-16 text; save it as UTF-8"),
         _ => None,
     }
 }
