@@ -260,7 +260,7 @@ fn invalid_floor_plans_are_refused_with_the_place_and_the_fix() {
         .to_string()
     };
     assert!(read("plan", &crs("urn:ogc:def:crs:EPSG::25832")).is_ok());
-    let line = json!({"type": "Feature", "properties": {"name": "track 4"}, "geometry":
+    let line = json!({"type": "Feature", "properties": {"name": "track 4", "kind": "floor"}, "geometry":
                       {"type": "LineString", "coordinates": [[0, 0], [1, 1]]}});
     let track = json!({"type": "FeatureCollection", "features": [feature(room(), "floor"), line]});
     for (text, parts) in [
@@ -288,7 +288,7 @@ fn invalid_floor_plans_are_refused_with_the_place_and_the_fix() {
             r#"{"type": "Polygon"}"#,
             vec!["not valid GeoJSON", "coordinates"],
         ),
-        ("LINESTRING (0 0, 9 9)", vec!["a LINESTRING has no area"]),
+        ("POINT (9 9)", vec!["a POINT has no area"]),
         (
             "GEOMETRYCOLLECTION (POLYGON ((0 0, 9 0, 9 9)), POINT (1 1))",
             vec!["geometry 2", "POINT"],

@@ -37,18 +37,14 @@ fn an_unknown_kind_is_refused_with_the_feature_and_the_known_kinds() {
     let pillar = square(4.0, 4.0, 1.0);
     for (kind, fix) in [
         (
-            json!("obstacles"),
-            "kind `obstacles` is unknown; did you mean `obstacle`?",
-        ),
-        (
             json!("Obstackle"),
             "kind `Obstackle` is unknown; did you mean `obstacle`?",
         ),
         (
-            json!("wall"),
-            "kind `wall` is unknown; write `obstacle` or `floor`",
+            json!("tree"),
+            "kind `tree` is unknown; write `floor`, `obstacle`, `wall`, `door`, `exit`, `entrance`, `crowd`, \
+             `waypoint`, `waiting area`, `queue`, `zone` or `place`",
         ),
-        (json!(3), "kind `3` is unknown; write `obstacle` or `floor`"),
     ] {
         let given = plan_with(&pillar, &json!({"kind": kind, "name": "pillar"}));
         let expected = format!("feature 2 (pillar): {fix}");
@@ -64,6 +60,10 @@ fn known_kinds_have_any_case_and_other_properties_do_not_matter() {
     let pillar = square(4.0, 4.0, 1.0);
     for (properties, expected) in [
         (json!({"kind": "OBSTACLE"}), 99.0),
+        (json!({"kind": "obstacles"}), 99.0),
+        (json!({"kind": "column"}), 99.0),
+        (json!({"kind": "wall"}), 99.0),
+        (json!({"kind": "crowd", "name": "stalls"}), 100.0),
         (json!({"kind": " obstacle "}), 99.0),
         (json!({"kind": "Floor"}), 100.0),
         (json!({"kind": ""}), 100.0),

@@ -22,7 +22,7 @@ pub struct MeasureOptions {
         endings()
     ))]
     pub trajectory: PathBuf,
-    /// Walkable area: a DXF, GeoJSON, WKT or JuPedSim XML file, or `none` for no walls [default: that of an SQLite or HDF5
+    /// Walkable area: DXF, GeoJSON, WKT or JuPedSim XML, or `none` for no walls [default: that of an SQLite or HDF5
     /// file, else none]
     #[arg(long, value_name = "FILE")]
     pub geometry: Option<PathBuf>,

@@ -76,24 +76,29 @@ impl Geometry {
         shapes: &mut Vec<Shape>,
     ) -> Result<(), FloorPlanError> {
         let first = shapes.len();
-        self.collect(place, kind, shapes);
-        match shapes.len() == first {
-            true => Err(FloorPlanError::EmptyGeometry(place.to_owned())),
-            false => Ok(()),
+        let empty = self.collect(place, kind, shapes);
+        match empty.filter(|_| shapes.len() == first) {
+            Some(place) => Err(FloorPlanError::EmptyGeometry(place)),
+            None => Ok(()),
         }
     }
 
-    fn collect(self, place: &str, kind: Kind, shapes: &mut Vec<Shape>) {
+    /// Adds the parts with points, and returns the place of the first part without any.
+    fn collect(self, place: &str, kind: Kind, shapes: &mut Vec<Shape>) -> Option<String> {
         let place = place.to_owned();
         let shape = match self {
+            Self::Several(_, parts) if parts.is_empty() => return Some(place),
             Self::Several(word, parts) => {
-                for (k, one) in parts.into_iter().enumerate() {
-                    one.collect(&part(&place, word, k), kind, shapes);
+                let parts = parts.into_iter().enumerate();
+                let mut empty = None;
+                for (k, one) in parts {
+                    let found = one.collect(&part(&place, word, k), kind, shapes);
+                    empty = empty.or(found);
                 }
-                return;
+                return empty;
             }
-            Self::Area(rings) if rings.iter().all(Vec::is_empty) => return,
-            Self::Line(points) if points.is_empty() => return,
+            Self::Area(rings) if rings.iter().all(Vec::is_empty) => return Some(place),
+            Self::Line(points) if points.is_empty() => return Some(place),
             Self::Area(rings) => Shape::new(place, rings, kind),
             Self::Line(points) => Shape::line(place, points, kind),
             Self::Point(point) => Shape {
@@ -102,6 +107,7 @@ impl Geometry {
             },
         };
         shapes.push(shape);
+        None
     }
 }
 
