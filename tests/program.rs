@@ -27,6 +27,8 @@ mod from_runs;
 mod hard_cases;
 mod headlines;
 mod interrupts;
+mod jupedsim_app;
+mod jupedsim_app_errors;
 mod killed;
 mod labels;
 mod lists;

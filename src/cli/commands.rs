@@ -81,7 +81,8 @@ pub enum Command {
     /// Run a scenario: a file, or a built-in one by its name
     #[command(after_help = "Example: sandbox run my_station.json --until 60 --threads 2 --json")]
     Run {
-        /// The scenario, a JSON file (`-`: the standard input); or the name of a built-in one
+        /// The scenario, a JSON file (`-`: the standard input) or one of JuPedSim's web app (.zip); or the name of a
+        /// built-in one
         file: PathBuf,
         #[command(flatten)]
         options: RunOptions,

@@ -18,7 +18,9 @@ use scenario::floor_plan::is_plan;
 use scenario::input::is_standard_input;
 use scenario::kinds;
 use scenario::quote::shown;
-use scenario::{Draft, Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, read_text};
+use scenario::{
+    Draft, Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, config_in, read_text,
+};
 
 /// The source of a scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,13 +40,13 @@ impl Source {
 
     /// The scenario of this name that ships with the program, otherwise a file.
     pub fn named(name: &str) -> Self {
-        Self::shipped(name).unwrap_or_else(|| Self::File(PathBuf::from(name)))
+        Self::at(PathBuf::from(name))
     }
 
-    /// The same for a path as typed.
+    /// The same for a path as typed. The folder of a scenario of JuPedSim's web app stands for its JSON file.
     pub fn at(path: PathBuf) -> Self {
         let shipped = path.to_str().and_then(Self::shipped);
-        shipped.unwrap_or(Self::File(path))
+        shipped.unwrap_or_else(|| Self::File(config_in(&path).unwrap_or(path)))
     }
 
     /// The scenario's text, and the name of its file for messages. A floor plan is a scenario without people.

@@ -17,7 +17,7 @@ const ENDINGS: [(&[&str], &str); 3] = [
         "a picture is not read: give the outlines as DXF, GeoJSON, WKT or JuPedSim XML",
     ),
     (
-        &["xlsx", "xls", "ods", "docx", "zip"],
+        &["xlsx", "xls", "ods", "docx"],
         "this kind of file is not read: scenarios are JSON, plans DXF, GeoJSON, WKT or JuPedSim XML",
     ),
 ];

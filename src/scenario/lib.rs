@@ -38,6 +38,8 @@ mod file;
 
 mod scene;
 
+mod jupedsim;
+
 mod read;
 
 pub use error::{Problem, ScenarioError};
@@ -54,6 +56,8 @@ pub use scene::view::View;
 
 #[doc(hidden)]
 pub use error::{in_plain_words, numbers::tidy, quote, suggestion};
+#[doc(hidden)]
+pub use jupedsim::config_in;
 #[doc(hidden)]
 pub use keys::{goals::WayFinding, preset::Preset};
 #[doc(hidden)]

@@ -54,6 +54,8 @@ pub mod wall_checks;
 #[path = "../../experiments/src/walls/integrals.rs"]
 pub mod wall_integrals;
 pub mod whole;
+#[cfg(feature = "program")]
+pub mod zips;
 
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::breakdown::Breakdown;

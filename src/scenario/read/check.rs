@@ -57,6 +57,7 @@ impl Draft {
             notes,
             need,
             inputs: Inputs::default(),
+            is_web_app: false,
         })
     }
 

@@ -8,12 +8,14 @@ use crate::error::numbers::tidy;
 use crate::error::{Problem, ScenarioError};
 use crate::file::File;
 use crate::floor_plan::Place;
+use crate::jupedsim;
 use crate::kinds;
 use crate::read::plans::PlanFile;
 use crate::read::scenario::Scenario;
 use crate::read::setting::Setting;
 use crate::read::{document, late, plans};
 use crate::scene::need::Need;
+use crate::scene::surroundings::WALKABLE_AREA;
 use crate::trajectories::Tracks;
 
 /// A scenario whose names, types and ranges are valid. Relations between values are not checked yet.
@@ -30,6 +32,8 @@ pub struct Draft {
     pub(super) notes: Vec<String>,
     pub(super) need: Need,
     pub(super) inputs: Inputs,
+    /// Whether it is a scenario of JuPedSim's web app.
+    pub(super) is_web_app: bool,
 }
 
 /// The file and the settings of a draft: error messages name the one that caused a problem.
@@ -55,6 +59,8 @@ impl Draft {
             settings: Vec::with_capacity(settings.len()),
         };
         let mut document = document::read(text, file)?;
+        let translated = jupedsim::translate(&mut document, Path::new(file));
+        let translated = translated.map_err(|problem| inputs.blame(problem))?;
         if let Some(what) = kinds::not_a_scenario(&document) {
             return Err(inputs.blame(Problem::new("", what)));
         }
@@ -71,6 +77,12 @@ impl Draft {
             Self::of(document, Path::new(file)).map_err(|problem| inputs.blame(problem))?;
         inputs.check_replaced()?;
         draft.need.text = text.len() as u64;
+        draft.is_web_app = translated.is_web_app;
+        draft.notes.splice(0..0, translated.notes);
+        let geometry = translated.geometry.into_iter();
+        draft
+            .files
+            .extend(geometry.map(|path| (WALKABLE_AREA, path)));
         Ok(Self { inputs, ..draft })
     }
 
@@ -105,6 +117,7 @@ impl Draft {
     /// The first problem, with its place.
     pub fn scenario(mut self) -> Result<Scenario, ScenarioError> {
         let inputs = std::mem::take(&mut self.inputs);
+        let is_web_app = self.is_web_app;
         let ends = self.ends(inputs.without.as_ref());
         let late = self.late(ends);
         let built = self.built(Path::new(&inputs.file), ends[1]);
@@ -114,6 +127,9 @@ impl Draft {
         scenario.notes.extend(late::short(&scenario.scene, ends));
         scenario.notes.extend(late::missed(&scenario.scene, ends));
         scenario.notes.extend(late::kept(&scenario.scene, ends));
+        scenario
+            .notes
+            .retain(|note| !is_web_app || !jupedsim::is_about_sides(note));
         scenario.notes = scenario.notes.iter().map(|note| tidy(note)).collect();
         scenario.changes = inputs.changes();
         Ok(scenario)

@@ -9,6 +9,7 @@ use crate::error::{Problem, ScenarioError};
 use crate::file::{Stop, range};
 use crate::floor_plan::{Label, Place};
 use crate::input;
+use crate::jupedsim;
 use crate::measurements::Measurement;
 use crate::read::document;
 use crate::read::draft::Draft;
@@ -169,11 +170,15 @@ pub fn shipped_text(name: &str) -> Result<&'static str, ScenarioError> {
     Ok(shipped.text)
 }
 
-/// Reads the text of a scenario file, or of the standard input for the path `-`.
+/// Reads the text of a scenario file, or of the standard input for the path `-`. A scenario of JuPedSim's web app can
+/// be in a zip archive.
 ///
 /// # Errors
 /// The file cannot be read, or is longer than 256 MiB.
 pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
+    if let Some(text) = jupedsim::text(path, document::read)? {
+        return Ok(text);
+    }
     let text = match input::is_standard_input(path) {
         true => input::standard_input(),
         false => input::text(path),
@@ -192,7 +197,9 @@ fn unreadable_because(error: &std::io::Error) -> String {
         ErrorKind::NotFound => {
             format!("{said}; `sandbox list` shows the built-in scenarios")
         }
-        ErrorKind::IsADirectory => format!("{said}; a scenario is a file"),
+        ErrorKind::IsADirectory => {
+            format!("{said}; a scenario is a file, or a folder with config.json and geometry.wkt")
+        }
         ErrorKind::InvalidData => {
             format!("{said}, or continue a checkpoint with `sandbox resume`")
         }

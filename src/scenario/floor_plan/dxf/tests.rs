@@ -203,7 +203,7 @@ fn try_files() {
         println!("== {}", path.display());
         match drawn(&bytes, &reading) {
             Err(error) => println!("  error: {error}"),
-            Ok(Drawn { shapes, notes }) => {
+            Ok(Drawn { shapes, notes, .. }) => {
                 for note in notes {
                     println!("  note: {note}");
                 }
