@@ -327,7 +327,7 @@ fn problems_with_the_data_name_their_place_and_the_fix() {
             &lines(&WALKERS, 25.0, 100.0),
             from(json!({})),
             json!({}),
-            "from.trajectory: half of all steps in people.txt are faster than 10 m/s; set `unit` (\"m\" or \"cm\") and \
+            "from.trajectory: half of all steps in people.txt are faster than 5 m/s; set `unit` (m, cm, mm, ft) and \
              `fps` to those of the file",
         ),
         (

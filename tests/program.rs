@@ -73,6 +73,7 @@ mod sweep_pictures;
 mod sweep_program;
 mod sweep_study;
 mod tables;
+mod tracks_read;
 mod trajectory;
 mod trajectory_area;
 mod trajectory_formats;

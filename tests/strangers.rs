@@ -105,9 +105,9 @@ fn every_slip_of_a_stranger_is_answered_with_what_to_do() {
     for (name, text) in &files {
         fs::write(folder.path().join(name), text).unwrap();
     }
-    let utf16 = "POLYGON".encode_utf16().flat_map(u16::to_le_bytes);
-    let utf16: Vec<u8> = [0xff, 0xfe].into_iter().chain(utf16).collect();
-    fs::write(folder.path().join("utf16.wkt"), utf16).unwrap();
+    let utf32 = "\u{feff}POLYGON".chars().map(u32::from);
+    let utf32: Vec<u8> = utf32.flat_map(u32::to_le_bytes).collect();
+    fs::write(folder.path().join("utf32.wkt"), utf32).unwrap();
     fs::write(folder.path().join("room.gz"), [0x1f, 0x8b, 8, 0]).unwrap();
     let place = folder.path().to_str().unwrap();
     for slip in &slips {

@@ -95,8 +95,11 @@ impl<R: Read> Read for Letters<R> {
                 return Ok(0);
             }
         }
-        let read = (&self.ready[self.taken..]).read(buffer)?;
+        let mut read = (&self.ready[self.taken..]).read(buffer)?;
         self.taken += read;
+        if matches!(encoding, Encoding::Utf8) {
+            read += self.file.read(&mut buffer[read..])?;
+        }
         Ok(read)
     }
 }

@@ -105,7 +105,7 @@ pub fn rest(file: impl Read, most: u64) -> Result<Vec<u8>> {
 pub struct Lines<R> {
     file: R,
     left: u64,
-    /// Whether lines end with carriage returns alone; `None` before the first bytes.
+    /// Whether lines end with carriage returns alone; `None` before the end of a line.
     returns: Option<bool>,
 }
 
@@ -135,9 +135,9 @@ impl<R: Read> Read for Lines<R> {
         let read = self.file.read(&mut buffer[..most])?;
         self.left -= read as u64;
         let bytes = &mut buffer[..read];
-        let is_first = self.returns.is_none() && read > 0;
-        if is_first {
-            self.returns = Some(bytes.contains(&b'\r') && !bytes.contains(&b'\n'));
+        let [has_return, has_feed] = [b'\r', b'\n'].map(|end| bytes.contains(&end));
+        if self.returns.is_none() && (has_return || has_feed) {
+            self.returns = Some(!has_feed);
         }
         if self.returns == Some(true) {
             let ends = bytes.iter_mut().filter(|byte| **byte == b'\r');

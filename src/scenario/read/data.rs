@@ -9,7 +9,7 @@ use crate::error::{Problem, Under};
 use crate::file::File;
 use crate::keys::from::{FILE, FROM, FromData, Person};
 use crate::read::plans::PlanFile;
-use crate::trajectories::{ReadOptions, TOO_FAST, Tracks, read};
+use crate::trajectories::{ReadOptions, TOO_FAST, Tracks, UNITS, read};
 
 /// Velocities are means from this long before to this long after, seconds, as in the measurement `line_flow`.
 const REACH: f64 = 0.2;
@@ -77,8 +77,8 @@ pub fn tracks(path: &Path, given: &FromData) -> Result<(Tracks, f64), Problem> {
     }
     if tracks.median_speed() > TOO_FAST {
         let reason = format!(
-            "half of all steps in {file} are faster than {TOO_FAST} m/s; set `unit` (\"m\" or \"cm\") and `fps` to \
-             those of the file"
+            "half of all steps in {file} are faster than {TOO_FAST} m/s; set `unit` ({}) and `fps` to those of the file",
+            UNITS.join(", ")
         );
         return Err(Problem::new("trajectory", reason));
     }
