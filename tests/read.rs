@@ -330,10 +330,10 @@ fn centimeters_without_a_unit_give_a_warning() {
 
 #[test]
 fn csv_columns_are_found_by_name() {
-    let text = "frame,time,id,group,pos_x,pos_y,mass\n0,0,4,all,1,2,0.9\n1,0.04,4,all,1.5,2,0.9\n";
+    let text = "frame,time,id,group,pos_x,pos_y,mass\n0,0,4,all,1,2,0.9\n1,0.5,4,all,1.5,2,0.9\n";
     let tracks = read_as("run.csv", text, &PLAIN).unwrap();
     assert_eq!(rows(&tracks), [(0, 4, 1.0, 2.0), (1, 4, 1.5, 2.0)]);
-    assert_eq!((tracks.fps, &tracks.mass), (25.0, &vec![0.9; 2]));
+    assert_eq!((tracks.fps, &tracks.mass), (2.0, &vec![0.9; 2]));
     assert!(tracks.notes.is_empty(), "{:?}", tracks.notes);
 }
 

@@ -430,7 +430,7 @@ fn advice_on_a_missing_frame_rate_names_the_option_of_the_command() {
             said.trim_end().ends_with(&format!("; give {option}")),
             "{said}"
         );
-        let given = [arguments, &[option, "25"]].concat();
+        let given = [arguments, &[option, "25", "--force"]].concat();
         succeeds(folder.path(), &given);
     }
 }

@@ -103,7 +103,7 @@ fn check_measured(tracks: &Tracks) {
         Ok::<(), MeasureError>(())
     })
     .unwrap();
-    assert_eq!(measured.overview.rows, tracks.len() as u64);
+    assert_eq!(measured.overview.rows, tracks.together().len() as u64);
     for spread in [measured.overview.density, measured.overview.speed] {
         assert!(spread.mean.is_finite() && spread.population_std().is_finite());
     }

@@ -57,6 +57,20 @@ impl<R: Read> Letters<R> {
         Ok(encoding)
     }
 
+    /// Fills a buffer, or reads to the end: a first read has the beginning of the text, not a few bytes.
+    fn fill(&mut self, buffer: &mut [u8]) -> Result<usize> {
+        let mut read = 0;
+        while read < buffer.len() {
+            match self.file.read(&mut buffer[read..]) {
+                Ok(0) => break,
+                Ok(more) => read += more,
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(read)
+    }
+
     /// Converts the next chunk of UTF-16. Returns whether there was one.
     fn convert(&mut self, number: fn([u8; 2]) -> u16) -> Result<bool> {
         let broken = |what: &str| Error::new(ErrorKind::InvalidData, format!("UTF-16 text {what}"));
@@ -87,7 +101,7 @@ impl<R: Read> Read for Letters<R> {
         };
         while self.taken == self.ready.len() {
             let more = match encoding {
-                Encoding::Utf8 => return self.file.read(buffer),
+                Encoding::Utf8 => return self.fill(buffer),
                 Encoding::Utf16LittleEndian => self.convert(u16::from_le_bytes)?,
                 Encoding::Utf16BigEndian => self.convert(u16::from_be_bytes)?,
             };
@@ -98,7 +112,7 @@ impl<R: Read> Read for Letters<R> {
         let mut read = (&self.ready[self.taken..]).read(buffer)?;
         self.taken += read;
         if matches!(encoding, Encoding::Utf8) {
-            read += self.file.read(&mut buffer[read..])?;
+            read += self.fill(&mut buffer[read..])?;
         }
         Ok(read)
     }
