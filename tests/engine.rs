@@ -21,6 +21,8 @@ mod door_routes;
 mod doors;
 mod doubts;
 mod dxf;
+mod dxf_drawing;
+mod dxf_files;
 mod enclosures;
 mod endings;
 mod entrances;

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use super::gaps;
 use super::map::Point;
 use super::network::{Line, Network};
 use super::rows::Rows;
@@ -222,6 +223,7 @@ pub fn enclosed(rings: &[Vec<Point>]) -> Result<Vec<Area>, FloorPlanError> {
         is_open: false,
     };
     let lines: Vec<Line> = rings.iter().map(closed).collect();
+    gaps::refuse_crowded(&lines)?;
     Faces::new(&lines).union(|face| face != OUTSIDE)
 }
 

@@ -3,9 +3,15 @@
 use super::map::Point;
 use super::network::Line;
 use super::rows::Rows;
+use crate::floor_plan::error::FloorPlanError;
 
 /// Ends nearer than this to another line meet it, meters.
 const MEETING: f64 = 1e-9;
+
+/// Most pairs of straight parts that cross: each pair takes about 200 bytes.
+const MOST_CROSSINGS: usize = 2_000_000;
+/// Most pairs of straight parts that are compared.
+const MOST_PAIRS: usize = 300_000_000;
 
 /// A gap that was closed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -122,6 +128,39 @@ impl Parts {
         }
         nearest
     }
+}
+
+/// Refuses lines that cross each other too often.
+pub fn refuse_crowded(lines: &[Line]) -> Result<(), FloorPlanError> {
+    match cross_too_often(lines) {
+        false => Ok(()),
+        true => Err(FloorPlanError::Geometry {
+            place: String::new(),
+            reason: "the lines cross each other millions of times; say in `plan.layers` which layers are left out \
+                     (`none`)"
+                .to_owned(),
+        }),
+    }
+}
+
+/// Whether more pairs of straight parts of lines cross than [`MOST_CROSSINGS`], or are near each other than
+/// [`MOST_PAIRS`].
+fn cross_too_often(lines: &[Line]) -> bool {
+    let parts = Parts::new(lines);
+    let span = |part: &Part, k: usize| {
+        let [a, b] = part.ends.map(|end| end[k]);
+        [a.min(b), a.max(b)]
+    };
+    let overlap = |[low, high]: [f64; 2], [from, to]: [f64; 2]| low <= to && high >= from;
+    let (mut pairs, mut crossings) = (0, 0);
+    parts.rows.pairs(|one, other| {
+        let [one, other] = [&parts.all[one], &parts.all[other]];
+        let is_near = overlap(span(one, 0), span(other, 0));
+        pairs += 1;
+        crossings += usize::from(is_near && one.meets(other));
+        pairs > MOST_PAIRS || crossings > MOST_CROSSINGS
+    });
+    pairs > MOST_PAIRS || crossings > MOST_CROSSINGS
 }
 
 /// Extends the ends of lines that are within `gap` of another line to it.

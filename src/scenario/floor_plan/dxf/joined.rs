@@ -54,18 +54,17 @@ pub fn joined<'a>(items: &[&'a Item], gap: f64) -> Result<Joined<'a>, FloorPlanE
     })
 }
 
+/// The points on the left and on the right of the middle of a straight line.
+pub fn beside(a: Point, b: Point) -> [Point; 2] {
+    let length = distance(a, b).max(BESIDE);
+    let left = [(a[1] - b[1]) / length, (b[0] - a[0]) / length];
+    [1.0, -1.0].map(|side| [0, 1].map(|k| 0.5 * (a[k] + b[k]) + side * BESIDE * left[k]))
+}
+
 /// Whether there are different areas on the two sides of the middle of a line. Short lines count as boundaries.
 fn is_boundary(faces: &Faces, a: Point, b: Point, gap: f64) -> bool {
-    let length = distance(a, b);
-    if length <= gap.max(BESIDE) {
-        return true;
-    }
-    let aside = [
-        (a[1] - b[1]) / length * BESIDE,
-        (b[0] - a[0]) / length * BESIDE,
-    ];
-    let middle = |sign: f64| [0, 1].map(|k| 0.5 * (a[k] + b[k]) + sign * aside[k]);
-    faces.at(middle(1.0)) != faces.at(middle(-1.0))
+    let [left, right] = beside(a, b).map(|p| faces.at(p));
+    left != right || distance(a, b) <= gap.max(BESIDE)
 }
 
 /// The outline of a floor that does not close.

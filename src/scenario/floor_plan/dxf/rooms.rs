@@ -6,11 +6,12 @@ use super::entities::is_name;
 use super::faces::{Faces, OUTSIDE};
 use super::gaps::{self, Gap, distance};
 use super::items::Item;
+use super::joined::beside;
 use super::map::Point;
 use super::names::Label;
 use super::network::Line;
 use super::units::Extent;
-use crate::error::quote::to_centimeters;
+use crate::error::quote::{shown, to_centimeters};
 use crate::floor_plan::error::FloorPlanError;
 use crate::floor_plan::kind::Kind;
 use crate::floor_plan::reading::Reading;
@@ -19,6 +20,8 @@ use engine::geometry::Area;
 
 /// Enclosed areas that are smaller are not listed, m².
 const LISTED: f64 = 2.0;
+/// Smaller enclosed areas are no floor unless a point asks for them, m².
+const LEAST: f64 = 1.0;
 /// A floor that is a smaller part of the rectangle around the walls is doubtful.
 const LITTLE: f64 = 0.1;
 /// Most ends of walls among which the nearest two are searched.
@@ -125,6 +128,7 @@ pub fn rooms(
     reading: &Reading,
 ) -> Result<Rooms, FloorPlanError> {
     let (owners, mut lines) = lines(items);
+    gaps::refuse_crowded(&lines)?;
     let gaps = gaps::close(&mut lines, reading.gap());
     let enclosed = Enclosed::new(&lines);
     let mut notes = Vec::new();
@@ -143,6 +147,13 @@ pub fn rooms(
         }
         chosen.push(enclosed.group[face]);
     }
+    if chosen.is_empty() && size < LEAST {
+        return Err(wrong(format!(
+            "the walls enclose no room: the largest enclosed area has {} m²{}",
+            to_centimeters(size),
+            ends(&enclosed.faces, reading.gap())
+        )));
+    }
     if chosen.is_empty() {
         chosen.push(largest);
         notes.push(
@@ -151,6 +162,7 @@ pub fn rooms(
     }
     chosen.sort_unstable();
     chosen.dedup();
+    notes.extend(closed_doors(&enclosed, &owners, &lines));
     let mut shapes = floors(&enclosed, &chosen, labels)?;
     let walls = owners
         .iter()
@@ -165,6 +177,29 @@ pub fn rooms(
         notes,
         gaps,
     })
+}
+
+/// A note on doors along walls that lead on below them, if there are any: such walls stay closed.
+fn closed_doors(enclosed: &Enclosed, owners: &[&Item], lines: &[Line]) -> Option<String> {
+    let is_closed = |line: &Line| {
+        let mut parts = line.points.windows(2);
+        parts.any(|pair| {
+            let [left, right] = beside(pair[0], pair[1]).map(|p| enclosed.faces.at(p));
+            let is_inside = left != OUTSIDE && right != OUTSIDE;
+            is_inside && enclosed.group[left] != enclosed.group[right]
+        })
+    };
+    let doors = owners.iter().zip(lines);
+    let mut closed = doors.filter(|(item, line)| item.kind == Kind::Door && is_closed(line));
+    let (first, _) = closed.next()?;
+    let more = match closed.count() {
+        0 => String::new(),
+        count => format!(" and {count} more"),
+    };
+    Some(format!(
+        "{}{more}: doors along walls without a gap stay closed; interrupt the walls there",
+        shown(&first.place)
+    ))
 }
 
 fn wrong(reason: String) -> FloorPlanError {

@@ -6,11 +6,12 @@ use i_overlay::mesh::outline::offset::OutlineOffset;
 use i_overlay::mesh::style::OutlineStyle;
 
 use super::faces;
-use super::gaps::{Gap, distance};
+use super::gaps::{self, Gap, distance};
 use super::items::{Form, Item};
 use super::joined::{self, Open};
 use super::layers::Sorted;
 use super::map::Point;
+use super::network::Line;
 use super::rooms::{rings, shown_point};
 use crate::error::quote::{shown, to_centimeters};
 use crate::floor_plan::error::FloorPlanError;
@@ -133,6 +134,11 @@ impl Shapes {
         } else {
             Kind::Obstacle
         };
+        let given = |item: &&Item| Line {
+            points: item.points().copied().collect(),
+            is_open: false,
+        };
+        gaps::refuse_crowded(&lines.iter().map(given).collect::<Vec<_>>())?;
         if is_floor {
             joined::open_outline(lines, gap).map_or(Ok(()), |open| Err(unclosed(&open)))?;
         }

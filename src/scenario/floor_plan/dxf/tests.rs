@@ -179,53 +179,52 @@ fn hidden_entities_and_those_of_paper_space_are_left_out() {
     entities += "0 MLINE 8 walls 10 5 20 5 0 VIEWPORT 8 walls 10 5 20 5 ";
     let found = read(&entities, &Reading::default());
     assert_eq!(found.shapes.len(), 1);
-    let expected = "not read: 1 entity on known layers, the first a MLINE on layer \"walls\" (line 58); explode it \
+    let expected = "not read: 1 entity on known layers, the first a MLINE on layer \"walls\" (line 66); explode it \
                     into lines";
     assert_eq!(found.notes, [expected]);
 }
-/// The plans of a folder, for trying: `DXF_TRY=folder cargo test try_files -- --nocapture`.
+
 #[test]
-fn try_files() {
-    let Ok(folder) = std::env::var("DXF_TRY") else {
-        return;
+fn a_door_along_a_wall_without_a_gap_stays_closed_with_a_note() {
+    let entities = [
+        rectangle("walls", [0.0, 0.0, 10.0, 5.0]),
+        line("walls", [6.0, 0.0, 6.0, 5.0]),
+        line("doors", [6.0, 2.0, 6.0, 3.0]),
+    ];
+    let found = read(&entities.concat(), &Reading::default());
+    let expected = "LINE on layer \"doors\" (line 54): doors along walls without a gap stay closed; interrupt the walls \
+                    there";
+    assert_eq!(found.notes[1], expected);
+}
+
+#[test]
+fn layers_that_are_off_or_frozen_are_left_out_and_lost_letters_are_noted() {
+    let layer = |name: &str, color: i32, flags: i32| {
+        format!("0\nLAYER\n2\n{name}\n62\n{color}\n70\n{flags}\n")
     };
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let mut reading = Reading::default();
-        if let Ok(text) = std::fs::read_to_string(path.with_extension("json")) {
-            reading = serde_json::from_str(&text).unwrap();
-        }
-        if path.extension().is_none_or(|e| e != "dxf") {
-            continue;
-        }
-        let bytes = std::fs::read(&path).unwrap();
-        let start = std::time::Instant::now();
-        println!("== {}", path.display());
-        match drawn(&bytes, &reading) {
-            Err(error) => println!("  error: {error}"),
-            Ok(Drawn { shapes, notes, .. }) => {
-                for note in notes {
-                    println!("  note: {note}");
-                }
-                let mut kinds = std::collections::BTreeMap::new();
-                for shape in &shapes {
-                    let key = format!("{:?} {:?}", shape.kind, shape.form);
-                    *kinds.entry(key).or_insert(0) += 1;
-                }
-                println!("  {kinds:?}");
-                let names: Vec<_> = shapes.iter().filter_map(|s| s.name.clone()).collect();
-                println!("  names {names:?}");
-                println!("  {:?}", start.elapsed());
-            }
-        }
-        match super::super::parse_bytes(&bytes, &reading) {
-            Ok(plan) => println!(
-                "  floor {:.6} m² in {}; {} obstacles",
-                plan.walkable.iter().map(|a| a.area()).sum::<f64>(),
-                plan.walkable.len(),
-                plan.obstacles.len()
-            ),
-            Err(error) => println!("  error: {error}"),
-        }
-    }
+    let header = "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n9\n$DWGCODEPAGE\n3\nANSI_1251\n9\n$INSUNITS\n70\n6\n0\n\
+                  ENDSEC\n0\nSECTION\n2\nTABLES\n";
+    let layers = [
+        layer("columns", -7, 0),
+        layer("furniture", 7, 1),
+        layer("walls \u{f8}", 7, 0),
+    ];
+    let entities = [
+        rectangle("floor", [0.0, 0.0, 9.0, 9.0]),
+        rectangle("columns", [1.0, 1.0, 1.0, 1.0]),
+        rectangle("furniture", [3.0, 3.0, 1.0, 1.0]),
+    ];
+    let mut text = header.to_owned() + &layers.concat() + "0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
+    text += &entities.concat().replace(' ', "\n");
+    text += "0\nENDSEC\n0\nEOF\n";
+    let found = drawn(text.as_bytes(), &Reading::default()).unwrap();
+    assert_eq!(found.shapes.len(), 1);
+    assert_eq!(
+        found.notes,
+        [
+            "the code page ANSI_1251 is not read: other letters than those of ASCII are `?` in names; save the drawing as \
+             DXF of version 2007 or later",
+            "left out, because they are off or frozen: layer \"columns\" (1 entity), layer \"furniture\" (1 entity)",
+        ]
+    );
 }

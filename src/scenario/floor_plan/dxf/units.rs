@@ -97,8 +97,8 @@ pub fn unit(
     let Some(unit) = guess else {
         let [width, height] = extent.size();
         return Err(syntax(format!(
-            "{why}, and the plan is {width} by {height} units in size: neither meters, centimeters nor millimeters are \
-             plausible; give `plan.unit`"
+            "{why}, and the plan is {width} by {height} units in size: neither meters, centimeters nor millimeters \
+             are plausible; give `plan.unit`"
         )));
     };
     let note = format!(
