@@ -81,7 +81,7 @@ impl Kind {
         let singular = word.strip_suffix('s').unwrap_or(&word);
         let means = |known: &&str| **known == word || **known == *singular;
         let mut kinds = WORDS.iter();
-        let found = kinds.find(|(_, words)| words.iter().any(means));
+        let found = kinds.find(|(_, words)| words.iter().any(&means));
         found.map(|(kind, _)| *kind)
     }
 

@@ -91,7 +91,7 @@ impl Conic {
 /// The angle `to` plus whole turns, after `from` by at most a turn, radians. Equal angles are a whole turn.
 pub fn to_after(from: f64, to: f64) -> f64 {
     let span = (to - from).rem_euclid(TAU);
-    let is_whole = span < 1e-9 || span > TAU - 1e-9;
+    let is_whole = !(1e-9..=TAU - 1e-9).contains(&span);
     from + if is_whole { TAU } else { span }
 }
 

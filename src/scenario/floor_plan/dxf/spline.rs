@@ -67,9 +67,7 @@ impl Spline {
                 } else {
                     0.0
                 };
-                for c in 0..3 {
-                    d[j][c] = (1.0 - share) * d[j - 1][c] + share * d[j][c];
-                }
+                d[j] = [0, 1, 2].map(|c| (1.0 - share) * d[j - 1][c] + share * d[j][c]);
             }
         }
         let [x, y, weight] = d[p];

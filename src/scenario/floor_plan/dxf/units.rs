@@ -192,8 +192,8 @@ mod tests {
         assert_eq!(length, 1.0);
         assert_eq!(
             note,
-            "taken as meters, 30 by 15 m: the header says millimeters, which would be 0.03 by 0.015 m; `plan.unit` says \
-             otherwise"
+            "taken as meters, 30 by 15 m: the header says millimeters, which would be 0.03 by 0.015 m; `plan.unit` \
+             says otherwise"
         );
         assert_eq!(found(None, 0, 30_000.0).0, 0.001);
         assert_eq!(found(None, 0, 1_000.0).0, 0.01);
