@@ -200,6 +200,14 @@ impl<'a> Sorted<'a> {
                 "has no entities in its model space: draw the walls or the floor, and save it again",
             );
         }
+        if let ([one], Some(_)) = (&all[..], &self.unread) {
+            return syntax_long(format!(
+                "has only entities that are not read, the first a {} on layer \"{}\" ({}); explode them into lines",
+                shown(&one.first.entity.kind),
+                self.layer(one.layer),
+                one.first.entity.at
+            ));
+        }
         syntax_long(format!(
             "no layer says what it is; `plan.layers` says so, for example {{\"{}\": \"wall\"}}. Layers: {}",
             self.layer(all[0].layer),
