@@ -29,6 +29,13 @@ fn errors_name_the_file_in_the_archive_and_the_place() {
             Packing::Deflated,
         )
     };
+    // What does not fit is known only after the translation.
+    refuses(
+        &config(&|c| {
+            c["distributions"]["jps-distributions_0"]["parameters"]["number"] = json!(900)
+        }),
+        &["crowds[0]", "jps-distributions_0: 900 agents do not fit"],
+    );
     let exit = "config.json: exits.jps-exits_0.coordinates";
     refuses(
         &config(&|c| c["exits"] = json!({})),
@@ -75,7 +82,7 @@ fn errors_name_the_file_in_the_archive_and_the_place() {
         ("config.json", text.as_bytes()),
         ("geometry.wkt", b"POLYGON ((0 0, 1 0))"),
     ];
-    refuses(&with(&both), &["geometry.wkt"]);
+    refuses(&with(&both), &["bad.zip: geometry.wkt: the outline"]);
     refuses(
         &with(&[both[0], ("a.wkt", b""), ("b.wkt", b"")]),
         &["a.wkt, b.wkt", "one .json and one .wkt"],

@@ -212,7 +212,7 @@ impl<'a> Object<'a> {
         const KEY: &str = "coordinates";
         let wrong = |k: usize| {
             let reason =
-                format!("must be a point [x, y] in meters, at most {FARTHEST} from the origin");
+                format!("must be a point [x, y] in meters, between -{FARTHEST} and {FARTHEST}");
             self.problem(&format!("{KEY}[{k}]"), reason)
         };
         let list = self.get(KEY).and_then(Value::as_array);

@@ -117,6 +117,18 @@ pub fn is_about_sides(note: &str) -> bool {
     is_behind || note.contains("is at no wall, so people leave in the middle of the floor")
 }
 
+/// A problem with people or places, with the name of what they are in the web app.
+pub fn named(problem: Problem, document: &Value) -> Problem {
+    let element = problem.path.split_once('[').and_then(|(list, rest)| {
+        let number: usize = rest.split_once(']')?.0.parse().ok()?;
+        document[list][number]["name"].as_str()
+    });
+    match element {
+        Some(name) => Problem::new(problem.path, format!("{}: {}", shown(name), problem.reason)),
+        None => problem,
+    }
+}
+
 /// Turns a scenario of the web app into one of this program. Leaves other documents as they are.
 ///
 /// # Errors
@@ -127,10 +139,13 @@ pub fn translate(document: &mut Value, file: &Path) -> Result<Translated, Proble
     }
     let names = document[FILES].clone();
     let mut notes = Notes::default();
-    // In an archive or folder the file that has the problem is named, too.
+    // In an archive the file that has the problem is named, too.
+    let geometry = names[1].as_str();
     let inner = |problem: Problem| match names[0].as_str() {
-        Some(name) => Problem::new(format!("{name}: {}", problem.path), problem.reason),
-        None => problem,
+        Some(name) if Some(&*problem.path) != geometry => {
+            Problem::new(format!("{name}: {}", problem.path), problem.reason)
+        }
+        _ => problem,
     };
     let unpacked = unpack_parameters(document);
     let found = unpacked.and_then(|()| translated(document, file, &mut notes));

@@ -73,8 +73,10 @@ impl Draft {
                 inputs.settings.push((path, setting.clone()));
             }
         }
-        let mut draft =
-            Self::of(document, Path::new(file)).map_err(|problem| inputs.blame(problem))?;
+        let copy = translated.is_web_app.then(|| document.clone());
+        let named = |problem| copy.iter().fold(problem, jupedsim::named);
+        let draft = Self::of(document, Path::new(file));
+        let mut draft = draft.map_err(|problem| inputs.blame(named(problem)))?;
         inputs.check_replaced()?;
         draft.need.text = text.len() as u64;
         draft.is_web_app = translated.is_web_app;
@@ -118,10 +120,14 @@ impl Draft {
     pub fn scenario(mut self) -> Result<Scenario, ScenarioError> {
         let inputs = std::mem::take(&mut self.inputs);
         let is_web_app = self.is_web_app;
+        let translated = is_web_app.then(|| self.document.clone());
         let ends = self.ends(inputs.without.as_ref());
         let late = self.late(ends);
         let built = self.built(Path::new(&inputs.file), ends[1]);
-        let mut scenario = built.map_err(|problem| inputs.blame(problem))?;
+        let mut scenario = built.map_err(|problem| {
+            let named = translated.iter().fold(problem, jupedsim::named);
+            inputs.blame(named)
+        })?;
         scenario.notes.extend(late);
         scenario.notes.extend(late::idle(&scenario.scene, ends));
         scenario.notes.extend(late::short(&scenario.scene, ends));
