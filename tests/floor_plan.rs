@@ -274,7 +274,7 @@ fn invalid_floor_plans_are_refused_with_the_place_and_the_fix() {
         ("POLYGON ((0 0, 1 0, 1", vec!["not valid WKT", "line 1"]),
         (
             "  0\nSECTION",
-            vec!["not valid WKT", "plans are WKT, GeoJSON"],
+            vec!["not valid DXF", "the file ends before the drawing does"],
         ),
         (
             "POLYGON ((0 0, 9 0, 9 9))\n rubbish",

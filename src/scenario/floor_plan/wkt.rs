@@ -61,7 +61,7 @@ fn formats(piece: &str) -> &'static str {
             "; a space separates x and y, a comma two points, and decimals have points: (0.5 0, 12 0, …)"
         }
         true => "",
-        false => "; plans are WKT, GeoJSON or JuPedSim's XML",
+        false => "; plans are DXF, GeoJSON, WKT or JuPedSim's XML",
     }
 }
 
