@@ -102,7 +102,7 @@ fn errors_name_the_file_in_the_archive_and_the_place() {
     let whole = with(&both);
     refuses(&whole[..whole.len() - 30], &["cut off or damaged"]);
     let mut changed = whole.clone();
-    changed[40] ^= 1;
+    changed[60] ^= 1;
     refuses(&changed, &["config.json", "damaged"]);
     // The flags and the method of the first entry in the directory.
     let directory = whole
