@@ -24,7 +24,9 @@ pub struct Column {
 }
 
 /// A row: what names it, and its values. It is the line of a text, and the id and the frame in a database.
-type Row<K> = (K, Vec<f64>);
+pub(super) type Row<K> = (K, Vec<f64>);
+/// The id and the frame of a row in a database.
+pub(super) type Key = (i64, i64);
 
 /// The columns with values of people of a CSV or SQLite file; the values of `wanted` and of the radius are read. Of
 /// files in HDF5 and text with blanks only positions are read.
@@ -121,7 +123,7 @@ fn sqlite_names(path: &Path) -> Vec<String> {
 }
 
 #[cfg(feature = "program")]
-fn sqlite_rows(path: &Path, names: &[&str]) -> Result<Vec<Row<(i64, i64)>>, ReadError> {
+fn sqlite_rows(path: &Path, names: &[&str]) -> Result<Vec<Row<Key>>, ReadError> {
     super::sqlite::values(path, names)
 }
 
@@ -131,6 +133,6 @@ fn sqlite_names(_: &Path) -> Vec<String> {
 }
 
 #[cfg(not(feature = "program"))]
-fn sqlite_rows(_: &Path, _: &[&str]) -> Result<Vec<Row<(i64, i64)>>, ReadError> {
+fn sqlite_rows(_: &Path, _: &[&str]) -> Result<Vec<Row<Key>>, ReadError> {
     Ok(Vec::new())
 }

@@ -90,10 +90,9 @@ impl Columns {
     /// of the time.
     pub fn units(&mut self, cells: &[&str]) -> Result<Option<Option<Unit>>, String> {
         let cell = |place: usize| cells.get(place).map_or("", |cell| cell.trim());
-        if [self.x, self.y]
-            .iter()
-            .any(|&place| number(cell(place)).is_some())
-        {
+        let instant = self.frame.or(self.time).unwrap_or(self.x);
+        let numbers = [self.x, self.y, instant].map(|place| number(cell(place)));
+        if numbers.iter().any(Option::is_some) {
             return Ok(None);
         }
         let Ok(unit) = length(&cell(self.x).to_lowercase()) else {

@@ -4,8 +4,9 @@ use crate::error::quote::shown_message;
 use std::path::Path;
 
 use rusqlite::types::ValueRef;
-use rusqlite::{Connection, OpenFlags, Row};
+use rusqlite::{Connection, OpenFlags, Row as Values};
 
+use super::columns::{Key, Row};
 use super::error::ReadError;
 use super::tracks::{Contents, Entry, Tracks};
 use super::{ReadOptions, Unit, frame_rate};
@@ -66,8 +67,8 @@ pub fn names(path: &Path) -> rusqlite::Result<Vec<String>> {
 }
 
 /// The id and the frame, and the values of some columns of each row; NaN where a value is not a number.
-pub fn values(path: &Path, names: &[&str]) -> Result<Vec<((i64, i64), Vec<f64>)>, ReadError> {
-    let read = || -> rusqlite::Result<Vec<((i64, i64), Vec<f64>)>> {
+pub fn values(path: &Path, names: &[&str]) -> Result<Vec<Row<Key>>, ReadError> {
+    let read = || -> rusqlite::Result<Vec<Row<Key>>> {
         let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
         let own = names.iter();
         let quoted = own.map(|name| format!("\"{}\"", name.replace('"', "\"\"")));
@@ -77,7 +78,7 @@ pub fn values(path: &Path, names: &[&str]) -> Result<Vec<((i64, i64), Vec<f64>)>
             columns.join(", ")
         );
         let mut query = connection.prepare(&text)?;
-        let row = |row: &Row| {
+        let row = |row: &Values| {
             let values = (2..2 + names.len()).map(|column| {
                 Ok(match row.get_ref(column)? {
                     ValueRef::Real(number) => number,
@@ -97,7 +98,7 @@ pub fn values(path: &Path, names: &[&str]) -> Result<Vec<((i64, i64), Vec<f64>)>
     read().map_err(|error| ReadError::file(path, shown_message(&error.to_string())))
 }
 
-fn entry(row: &Row, line: u64) -> Result<Entry, String> {
+fn entry(row: &Values, line: u64) -> Result<Entry, String> {
     let whole = |column: usize, what: &str| {
         let value = row.get_ref(column).ok().and_then(whole);
         value.ok_or_else(|| format!("{what} is not a whole number"))
@@ -152,7 +153,7 @@ fn walkable(connection: &Connection) -> rusqlite::Result<Vec<String>> {
     let Ok(mut query) = connection.prepare("SELECT DISTINCT wkt FROM geometry") else {
         return Ok(Vec::new());
     };
-    let text = |row: &Row| {
+    let text = |row: &Values| {
         Ok(match row.get_ref(0)? {
             ValueRef::Text(text) | ValueRef::Blob(text) => {
                 String::from_utf8_lossy(text).into_owned()

@@ -9,6 +9,8 @@ use engine::math::Vector;
 
 /// A person has a step of its own if so many of its rows are this far from the next.
 const FEWEST: u64 = 3;
+/// A step of a person's own is at most this many times that of the others: longer ones are gaps.
+const LONGEST: i64 = 16;
 /// Speeds are means over at least this time, seconds, so that the noise of single positions counts little.
 const LEAST_SECS: f64 = 0.4;
 /// How fast people walk, m/s: the unit that makes a median speed most like it probably is the right one.
@@ -49,7 +51,8 @@ impl Tracks {
         let own = of_people.iter().enumerate().filter_map(|(p, steps)| {
             let (step, count) = most_common(steps)?;
             let is_usual = count >= FEWEST && 2 * count > steps.values().sum();
-            (is_usual && step != self.step).then_some((p as u32, step))
+            let is_own = is_usual && step != self.step && step / LONGEST <= self.step;
+            is_own.then_some((p as u32, step))
         });
         self.steps = own.collect();
     }
