@@ -61,8 +61,10 @@ fn loops(edges: &[Edge]) -> Result<Vec<(bool, Vec<usize>)>, Point> {
     let node = |p: Point| leaving.partition_point(|&k| edges[k].from < p);
     // The edge that continues along the same area: the next one clockwise.
     let after = |edge: Edge| {
-        let here = leaving[node(edge.to)..].iter().copied();
-        let here = here.take_while(|&k| edges[k].from == edge.to);
+        let here = leaving[node(edge.to)..]
+            .iter()
+            .copied()
+            .take_while(|&k| edges[k].from == edge.to);
         let back = between(edge.to, edge.from);
         here.min_by(|&a, &b| {
             let [a, b] = [a, b].map(|k| edges[k].direction());

@@ -53,10 +53,10 @@ fn without_empty_polygons(value: &mut Value) {
     match value {
         Value::Array(list) => list.iter_mut().for_each(without_empty_polygons),
         Value::Object(keys) => {
-            let inner = ["features", "geometry", "geometries"];
+            let with_geometry = ["features", "geometry", "geometries"];
             let inner = keys
                 .iter_mut()
-                .filter(|(key, _)| inner.contains(&key.as_str()));
+                .filter(|(key, _)| with_geometry.contains(&key.as_str()));
             inner.for_each(|(_, one)| without_empty_polygons(one));
         }
         _ => {}
@@ -130,8 +130,8 @@ fn kind(feature: &Feature, place: &str) -> Result<Option<Kind>, FloorPlanError> 
         _ if word.trim().is_empty() => Ok(None),
         Some(kind) => Ok(Some(kind)),
         None => {
-            let near = suggestion(&word.to_lowercase(), Kind::words());
-            let near = match near.as_str() {
+            let suggested = suggestion(&word.to_lowercase(), Kind::words());
+            let near = match suggested.as_str() {
                 "" => format!("; write {}", listed(Kind::words())),
                 near => near.to_owned(),
             };
@@ -207,8 +207,8 @@ fn parts(geometry: &Geometry, place: &str) -> Result<Parts, FloorPlanError> {
             .collect::<Result<Vec<_>, _>>()
     };
     let area = |rings: &[Vec<Position>], place: &str| {
-        let rings = rings.iter().enumerate();
-        let rings = rings.map(|(r, ring)| line(ring, &part(place, "ring", r)));
+        let numbered = rings.iter().enumerate();
+        let rings = numbered.map(|(r, ring)| line(ring, &part(place, "ring", r)));
         rings.collect::<Result<_, _>>().map(Parts::Area)
     };
     let several = |word: &'static str, parts: Vec<Result<Parts, FloorPlanError>>| {
@@ -220,23 +220,24 @@ fn parts(geometry: &Geometry, place: &str) -> Result<Parts, FloorPlanError> {
         GeometryValue::LineString { coordinates } => line(coordinates, place).map(Parts::Line),
         GeometryValue::Point { coordinates } => point(place, 0, coordinates).map(Parts::Point),
         GeometryValue::MultiPolygon { coordinates } => {
-            let polygons = coordinates.iter().enumerate();
-            let polygons = polygons.map(|(k, one)| area(one, &part(place, "polygon", k)));
+            let numbered = coordinates.iter().enumerate();
+            let polygons = numbered.map(|(k, one)| area(one, &part(place, "polygon", k)));
             several("polygon", polygons.collect())
         }
         GeometryValue::MultiLineString { coordinates } => {
-            let lines = coordinates.iter().enumerate();
-            let lines = lines.map(|(k, one)| Ok(Parts::Line(line(one, &part(place, "line", k))?)));
+            let numbered = coordinates.iter().enumerate();
+            let lines =
+                numbered.map(|(k, one)| Ok(Parts::Line(line(one, &part(place, "line", k))?)));
             several("line", lines.collect())
         }
         GeometryValue::MultiPoint { coordinates } => {
-            let points = coordinates.iter().enumerate();
-            let points = points.map(|(k, one)| Ok(Parts::Point(point(place, k, one)?)));
+            let numbered = coordinates.iter().enumerate();
+            let points = numbered.map(|(k, one)| Ok(Parts::Point(point(place, k, one)?)));
             several("point", points.collect())
         }
         GeometryValue::GeometryCollection { geometries } => {
-            let geometries = geometries.iter().enumerate();
-            let geometries = geometries.map(|(k, one)| parts(one, &part(place, "geometry", k)));
+            let numbered = geometries.iter().enumerate();
+            let geometries = numbered.map(|(k, one)| parts(one, &part(place, "geometry", k)));
             several("geometry", geometries.collect())
         }
     }

@@ -176,8 +176,8 @@ fn in_file(
         within(what.unwrap_or(error))
     };
     let unreadable = |error: std::io::Error| FloorPlanError::Unreadable(error.to_string());
-    let bytes = input::bytes(path, input::LONGEST_TEXT);
-    let bytes = bytes.map_err(|error| explained(unreadable(error)))?;
+    let bytes =
+        input::bytes(path, input::LONGEST_TEXT).map_err(|error| explained(unreadable(error)))?;
     parse(&bytes).map_err(explained)
 }
 
@@ -191,8 +191,8 @@ fn drawn(
     if is_drawing(bytes, path) {
         return dxf::drawn(bytes, reading);
     }
-    let text = input::text_of(bytes.to_vec());
-    let text = text.map_err(|error| FloorPlanError::Unreadable(error.to_string()))?;
+    let text = input::text_of(bytes.to_vec())
+        .map_err(|error| FloorPlanError::Unreadable(error.to_string()))?;
     let mut drawn = match text.trim_start().bytes().next() {
         Some(b'{') => geojson::drawn(&text, all_obstacles)?,
         Some(b'<') => xml::drawn(text.trim_start(), reading)?,

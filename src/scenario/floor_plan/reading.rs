@@ -70,8 +70,8 @@ impl Reading {
     /// What a layer is: as `layers` says, else as its own name says. `Some(None)`: it is left out on purpose; `None`:
     /// nothing says what it is. An unknown word is an error, with the word.
     pub fn kind_of(&self, layer: &str) -> Result<Option<Option<Kind>>, String> {
-        let mut given = self.layers.iter();
-        let given = given.find(|(name, _)| name.to_lowercase() == layer.to_lowercase());
+        let mut layers = self.layers.iter();
+        let given = layers.find(|(name, _)| name.to_lowercase() == layer.to_lowercase());
         match given {
             None => Ok(Kind::of_layer(layer).map(Some)),
             Some((_, word)) if word == NONE => Ok(Some(None)),
@@ -100,8 +100,8 @@ impl Drawn {
     /// # Errors
     /// The unit is unknown.
     pub fn place(&mut self, reading: &Reading) -> Result<(), FloorPlanError> {
-        let typed = reading.unit.as_deref().map(Unit::named).transpose()?;
-        let typed = typed.map(|unit| unit.length);
+        let unit = reading.unit.as_deref().map(Unit::named).transpose()?;
+        let typed = unit.map(|unit| unit.length);
         let declared = self.unit.take().filter(|_| typed.is_none());
         if let Some((name, _)) = &declared {
             self.notes.push(format!(

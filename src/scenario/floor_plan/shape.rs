@@ -151,16 +151,16 @@ impl Shape {
                  closer to the origin: subtract a point near the site from all coordinates"
             )));
         }
-        let mut rings = Vec::with_capacity(self.rings.len());
+        let mut checked = Vec::with_capacity(self.rings.len());
         for (k, points) in self.rings.iter().enumerate() {
             let name = match k {
                 0 => "the outline".to_owned(),
                 _ => format!("hole {k}"),
             };
             let ring = ring(points).map_err(|reason| self.wrong(&format!("{name} {reason}")))?;
-            rings.push(ring);
+            checked.push(ring);
         }
-        let mut rings = rings.into_iter();
+        let mut rings = checked.into_iter();
         let Some(exterior) = rings.next() else {
             return Err(FloorPlanError::EmptyGeometry(self.place.clone()));
         };

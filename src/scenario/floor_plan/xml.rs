@@ -45,13 +45,13 @@ pub fn drawn(text: &str, reading: &Reading) -> Result<Drawn, FloorPlanError> {
     let meters = unit(root)?;
     let doors = doors(root, meters)?;
     let mut drawn = Drawn::default();
-    let mut rooms = Vec::new();
+    let mut found = Vec::new();
     for room in elements(root, "room") {
         for subroom in room.children().filter(|node| node.has_tag_name("subroom")) {
             let first = drawn.shapes.len();
             subroom_of(room, subroom, &doors, meters, &mut drawn.shapes)?;
             let shapes = first..drawn.shapes.len();
-            rooms.push(Room::of(room, subroom, shapes));
+            found.push(Room::of(room, subroom, shapes));
         }
     }
     let all = elements(root, "subroom").count();
@@ -59,14 +59,14 @@ pub fn drawn(text: &str, reading: &Reading) -> Result<Drawn, FloorPlanError> {
         let reason = format!("has {all} <subroom>, none of them directly in a <room>");
         return Err(wrong("geometry", reason));
     }
-    let rooms = storeys::choose(rooms, reading, &mut drawn)?;
+    let rooms = storeys::choose(found, reading, &mut drawn)?;
     let is_there = |door: &Door| {
         rooms
             .iter()
             .any(|room| door.sides.iter().any(|side| room.side == *side))
     };
-    let doors = doors.into_iter().filter(is_there);
-    drawn.shapes.extend(doors.map(Door::shape));
+    let kept = doors.into_iter().filter(is_there);
+    drawn.shapes.extend(kept.map(Door::shape));
     Ok(drawn)
 }
 

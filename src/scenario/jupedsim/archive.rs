@@ -48,8 +48,8 @@ pub fn entries(archive: &[u8]) -> Result<Vec<Entry>, String> {
     let damaged = || "the zip archive is cut off or damaged".to_owned();
     let from = archive.len().saturating_sub(END_LENGTH + LONGEST_COMMENT);
     let tail = &archive[from..];
-    let end = tail.windows(END.len()).rposition(|bytes| bytes == END);
-    let end = from + end.ok_or_else(damaged)?;
+    let in_tail = tail.windows(END.len()).rposition(|bytes| bytes == END);
+    let end = from + in_tail.ok_or_else(damaged)?;
     let count = number(archive, end + 10, 2).ok_or_else(damaged)?;
     let mut at = number(archive, end + 16, 4).ok_or_else(damaged)?;
     let (mut entries, mut total) = (Vec::new(), 0_usize);

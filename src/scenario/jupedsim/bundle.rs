@@ -55,8 +55,7 @@ pub fn geometry_beside(file: &Path) -> Result<(PathBuf, String), String> {
         format!("needs `{GEOMETRY}`, or one .wkt file beside it; there are {found}")
     })?;
     let path = folder.join(&name);
-    let text = input::text(&path);
-    let text = text.map_err(|error| format!("{}: {error}", shown(&name)))?;
+    let text = input::text(&path).map_err(|error| format!("{}: {error}", shown(&name)))?;
     Ok((path, text))
 }
 
@@ -91,10 +90,10 @@ fn in_archive(path: &Path) -> Result<Files, String> {
         let name =
             only(&names, ending).map_err(|found| format!("a zip archive with {found}; {PARTS}"))?;
         let entry = entries.iter().find(|entry| entry.name == name);
-        let content = entry.map_or(Ok(Vec::new()), |entry| entry.content(&archive));
-        let content = content.map_err(|reason| format!("{}: {reason}", shown(&name)))?;
-        let text = input::text_of(content);
-        let text = text.map_err(|error| format!("{}: {error}", shown(&name)))?;
+        let content = entry
+            .map_or(Ok(Vec::new()), |entry| entry.content(&archive))
+            .map_err(|reason| format!("{}: {reason}", shown(&name)))?;
+        let text = input::text_of(content).map_err(|error| format!("{}: {error}", shown(&name)))?;
         Ok((name, text))
     };
     Ok([read("json")?, read("wkt")?])
@@ -108,8 +107,8 @@ fn names(folder: &Path) -> Result<Vec<String>, String> {
     };
     let entries = folder.read_dir().map_err(|error| error.to_string())?;
     let files = entries.flatten().filter(|entry| entry.path().is_file());
-    let names = files.map(|entry| entry.file_name().to_string_lossy().into_owned());
-    let mut names: Vec<String> = names.filter(|name| !name.starts_with('.')).collect();
+    let all = files.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let mut names: Vec<String> = all.filter(|name| !name.starts_with('.')).collect();
     names.sort();
     Ok(names)
 }

@@ -134,8 +134,9 @@ impl<'a> Object<'a> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
-        let map = value.as_object();
-        let map = map.ok_or_else(|| self.problem(key, "must be an object"))?;
+        let map = value
+            .as_object()
+            .ok_or_else(|| self.problem(key, "must be an object"))?;
         Ok(Some(Self {
             map,
             path: joined(&self.path, key),
@@ -160,8 +161,9 @@ impl<'a> Object<'a> {
             return Ok(Vec::new());
         };
         let element = |id: &'a String| -> Result<(&'a str, Self), Problem> {
-            let found = parent.object(id)?;
-            let mut found = found.ok_or_else(|| parent.problem(id, "must be an object"))?;
+            let mut found = parent
+                .object(id)?
+                .ok_or_else(|| parent.problem(id, "must be an object"))?;
             found.pattern = joined(&parent.pattern, "*");
             Ok((id.as_str(), found))
         };
@@ -179,8 +181,9 @@ impl<'a> Object<'a> {
         let Some(value) = self.get(key) else {
             return Ok(Vec::new());
         };
-        let list = value.as_array();
-        let list = list.ok_or_else(|| self.problem(key, "must be a list"))?;
+        let list = value
+            .as_array()
+            .ok_or_else(|| self.problem(key, "must be a list"))?;
         let element = |(k, value): (usize, &'a Value)| -> Result<Self, Problem> {
             let path = joined(&self.path, &format!("{key}[{k}]"));
             let map = value.as_object();
@@ -198,10 +201,9 @@ impl<'a> Object<'a> {
         let Some(value) = self.get(key) else {
             return Ok(Vec::new());
         };
-        let words = value
+        let words: Option<Option<Vec<&str>>> = value
             .as_array()
             .map(|list| list.iter().map(Value::as_str).collect());
-        let words: Option<Option<Vec<&str>>> = words;
         words
             .flatten()
             .ok_or_else(|| self.problem(key, "must be a list of ids"))
@@ -215,12 +217,14 @@ impl<'a> Object<'a> {
                 format!("must be a point [x, y] in meters, between -{FARTHEST} and {FARTHEST}");
             self.problem(&format!("{KEY}[{k}]"), reason)
         };
-        let list = self.get(KEY).and_then(Value::as_array);
-        let list = list.ok_or_else(|| self.problem(KEY, "needs a list of points [x, y]"))?;
+        let list = self
+            .get(KEY)
+            .and_then(Value::as_array)
+            .ok_or_else(|| self.problem(KEY, "needs a list of points [x, y]"))?;
         let mut points: Vec<Vector> = Vec::with_capacity(list.len());
         for (k, value) in list.iter().enumerate() {
-            let point = [0, 1].map(|axis| value[axis].as_f64());
-            let [Some(x), Some(y)] = point.map(|x| x.filter(|x| x.abs() <= FARTHEST)) else {
+            let numbers = [0, 1].map(|axis| value[axis].as_f64());
+            let [Some(x), Some(y)] = numbers.map(|x| x.filter(|x| x.abs() <= FARTHEST)) else {
                 return Err(wrong(k));
             };
             let point = Vector::new(x, y);
@@ -237,8 +241,8 @@ impl<'a> Object<'a> {
 
     /// Notes the keys that are not among `known`. Keys that begin with `_` are comments.
     pub fn note_unknown(&self, known: &[&str], notes: &mut Notes) {
-        let unknown = self.map.keys().filter(|key| !known.contains(&key.as_str()));
-        let unknown = unknown.filter(|key| !key.starts_with('_'));
+        let others = self.map.keys().filter(|key| !known.contains(&key.as_str()));
+        let unknown = others.filter(|key| !key.starts_with('_'));
         notes
             .unknown
             .extend(unknown.map(|key| joined(&self.pattern, key)));

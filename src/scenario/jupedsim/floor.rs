@@ -21,13 +21,13 @@ pub struct Floor {
 impl Floor {
     /// The floor of well-known text without the obstacles that have coordinates.
     pub fn new(geometry: &str, obstacles: &[Ring]) -> Result<Self, Problem> {
-        let plan = floor_plan::parse_wkt(geometry)?;
+        let drawn = floor_plan::parse_wkt(geometry)?;
         let solid = |ring: &Ring| ring.points().to_vec();
         let areas = match obstacles.is_empty() {
-            true => plan.walkable,
+            true => drawn.walkable,
             false => {
                 let solids = obstacles.iter().map(solid).collect();
-                floor_plan::free(&[floor_plan::rings(&plan.walkable)], &solids)?
+                floor_plan::free(&[floor_plan::rings(&drawn.walkable)], &solids)?
             }
         };
         let plan = FloorPlan {
@@ -59,8 +59,8 @@ impl Floor {
     /// The part of the polygon of an element that is on the floor; `None` if all of it is off the floor.
     pub fn part(&self, element: &Object) -> Result<Option<Part>, Problem> {
         let ring = element.polygon()?;
-        let parts = parts_on_floor(&ring, &self.walls, &Vec::new());
-        let parts = parts.map_err(|error| element.problem("coordinates", error.to_string()))?;
+        let parts = parts_on_floor(&ring, &self.walls, &Vec::new())
+            .map_err(|error| element.problem("coordinates", error.to_string()))?;
         let square_meters = parts.iter().map(Area::area).sum();
         let largest = parts
             .into_iter()

@@ -187,8 +187,9 @@ fn translated(
     let outlined = obstacles
         .iter()
         .filter(|(_, obstacle)| obstacle.says("coordinates"));
-    let rings = outlined.map(|(_, obstacle)| obstacle.polygon());
-    let rings: Vec<_> = rings.collect::<Result<_, _>>()?;
+    let rings: Vec<_> = outlined
+        .map(|(_, obstacle)| obstacle.polygon())
+        .collect::<Result<_, _>>()?;
     let (path, text) = match root.word(GEOMETRY)? {
         Some(text) => (None, text.to_owned()),
         None => {
@@ -197,12 +198,12 @@ fn translated(
             (Some(beside.0), beside.1)
         }
     };
-    let name = path
+    let of_file = path
         .as_deref()
         .and_then(Path::file_name)
         .and_then(OsStr::to_str);
-    let name = name.or(document[FILES][1].as_str()).unwrap_or(GEOMETRY);
-    let floor = Floor::new(&text, &rings).under(name)?;
+    let geometry = of_file.or(document[FILES][1].as_str()).unwrap_or(GEOMETRY);
+    let floor = Floor::new(&text, &rings).under(geometry)?;
     let places = Places::read(&root, &floor, notes)?;
     let routes = Routes::read(&root, &places, notes)?;
     let people = People::read(&root, &floor, &routes, notes)?;
@@ -269,14 +270,14 @@ fn settings(root: &Object, notes: &mut Notes) -> Result<Value, Problem> {
 
 /// Notes the parameters of JuPedSim's models that have been changed.
 fn note_parameters(parameters: &Object, notes: &mut Notes) {
-    let known: Vec<&str> = MODEL_PARAMETERS.iter().map(|(name, _)| *name).collect();
-    let known = [known, OTHER_PARAMETERS.to_vec()].concat();
+    let of_models: Vec<&str> = MODEL_PARAMETERS.iter().map(|(name, _)| *name).collect();
+    let known = [of_models, OTHER_PARAMETERS.to_vec()].concat();
     parameters.note_unknown(&known, notes);
     let number = |name: &str| parameters.get(name).and_then(Value::as_f64);
     let models = MODEL_PARAMETERS.iter();
-    let changed =
+    let other =
         models.filter_map(|(name, default)| Some((name, number(name).filter(|x| x != default)?)));
-    let changed: Vec<String> = changed
+    let changed: Vec<String> = other
         .map(|(name, value)| format!("{name} {value}"))
         .collect();
     if !changed.is_empty() {

@@ -247,8 +247,8 @@ fn split<'a>(journeys: &[(Option<&'a str>, f64)], number: u64) -> Vec<(Option<&'
     let mut rest = number;
     let last = journeys.len().saturating_sub(1);
     let parts = journeys.iter().enumerate().map(|(k, &(journey, weight))| {
-        let part = (number as f64 * weight / sum).round_ties_even() as u64;
-        let part = if k == last { rest } else { part.min(rest) };
+        let share = (number as f64 * weight / sum).round_ties_even() as u64;
+        let part = if k == last { rest } else { share.min(rest) };
         rest -= part;
         (journey, part)
     });
@@ -304,10 +304,10 @@ fn premovement(parameters: &Object) -> Result<Value, Problem> {
         }
     };
     let [a, b] = ["premovement_param_a", "premovement_param_b"];
-    let given = parameters
+    let both = parameters
         .number(a, f64::MIN)?
         .zip(parameters.number(b, f64::MIN)?);
-    let given = given.map(|(a, b)| [a, b]).or(preset);
+    let given = both.map(|(a, b)| [a, b]).or(preset);
     let [a, b] = given.ok_or_else(|| parameters.problem(a, format!("is needed, and {b}")))?;
     Ok(match name {
         "gamma" => json!({"gamma": {"shape": a, "scale": b}}),

@@ -132,8 +132,7 @@ impl Places {
         notes: &mut Notes,
     ) -> Result<(), Problem> {
         let wrong = |reason: &str| exit.problem("coordinates", reason);
-        let part = floor.part(exit)?;
-        let part = part.ok_or_else(|| {
+        let part = floor.part(exit)?.ok_or_else(|| {
             wrong("lies outside of the walkable area, so that no person comes in")
         })?;
         let mut lines = open_sides(&part, floor);
@@ -144,8 +143,8 @@ impl Places {
         }
         let rate = exit
             .number("max_throughput", 0.0)?
-            .filter(|&rate| rate > 0.0);
-        let rate = rate.filter(|_| exit.flag("enable_throughput_throttling"));
+            .filter(|&rate| rate > 0.0)
+            .filter(|_| exit.flag("enable_throughput_throttling"));
         if rate.is_some() && lines.len() > 1 {
             notes.add(format!(
                 "exits.{id}: people come in by the longest of its {} open sides alone, as its throughput is limited",

@@ -50,8 +50,8 @@ impl Routes {
             .filter(|id| is_free(id))
             .collect();
         if !without.is_empty() && !places.checkpoints.is_empty() {
-            let stages = places.checkpoints.iter().map(|id| places.stage(id));
-            let stages: Vec<Value> = stages.chain([places.nearest_exit()]).collect();
+            let passed = places.checkpoints.iter().map(|id| places.stage(id));
+            let stages: Vec<Value> = passed.chain([places.nearest_exit()]).collect();
             routes.add(ALL_CHECKPOINTS, stages);
             routes.default = Some(ALL_CHECKPOINTS.to_owned());
             notes.add(format!(
@@ -89,8 +89,9 @@ impl Routes {
         let mut taken = BTreeSet::new();
         for journey in root.list("journeys_v2")? {
             journey.note_unknown(&JOURNEY, notes);
-            let id = journey.word("id")?;
-            let id = id.ok_or_else(|| journey.problem("id", "is missing"))?;
+            let id = journey
+                .word("id")?
+                .ok_or_else(|| journey.problem("id", "is missing"))?;
             let sequence = known(
                 journey.words("sequence")?,
                 places,
@@ -100,8 +101,8 @@ impl Routes {
             if sequence.is_empty() {
                 continue;
             }
-            let name = journey.word("name")?.filter(|name| !name.is_empty());
-            let name = name.filter(|&name| !taken.contains(name)).unwrap_or(id);
+            let own = journey.word("name")?.filter(|name| !name.is_empty());
+            let name = own.filter(|&name| !taken.contains(name)).unwrap_or(id);
             if !taken.insert(name) {
                 return Err(journey.problem("id", "another journey has this id"));
             }
@@ -137,8 +138,9 @@ impl Routes {
     ) -> Result<(), Problem> {
         for journey in root.list("journeys")? {
             journey.note_unknown(&FORMER, notes);
-            let id = journey.word("id")?;
-            let id = id.ok_or_else(|| journey.problem("id", "is missing"))?;
+            let id = journey
+                .word("id")?
+                .ok_or_else(|| journey.problem("id", "is missing"))?;
             let listed = journey.words("stages")?;
             let (starts, inner): (Vec<&str>, Vec<&str>) = listed
                 .iter()

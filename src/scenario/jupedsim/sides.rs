@@ -24,9 +24,9 @@ pub fn open_sides(part: &Part, floor: &Floor) -> Vec<[Vector; 2]> {
         found.extend(open_parts(a, b, floor));
     }
     let length = |[a, b]: &[Vector; 2]| (b - a).norm();
-    let first = found.iter().enumerate();
-    let first = first.max_by(|(_, a), (_, b)| length(a).total_cmp(&length(b)));
-    let Some((k, &[a, b])) = first else {
+    let numbered = found.iter().enumerate();
+    let longest = numbered.max_by(|(_, a), (_, b)| length(a).total_cmp(&length(b)));
+    let Some((k, &[a, b])) = longest else {
         return Vec::new();
     };
     found.rotate_left(k);
@@ -77,8 +77,8 @@ fn straightened(ring: &[Vector], tolerance: f64) -> Vec<Vector> {
     let first = farthest(ring[0]);
     let mut turned = ring.to_vec();
     turned.rotate_left(first);
-    let second = farthest(ring[first]);
-    let second = (second + ring.len() - first) % ring.len();
+    let opposite = farthest(ring[first]);
+    let second = (opposite + ring.len() - first) % ring.len();
     turned.push(turned[0]);
     let mut kept = Vec::new();
     keep(&turned[..=second], tolerance, &mut kept);

@@ -84,7 +84,7 @@ fn add_rows(path: &Path, trajectory: &Dataset, contents: &mut Contents) -> Resul
         let read = trajectory.read_raw_rows(first, ROWS);
         let records = read.map_err(|error| damaged(&error))?;
         for (line, record) in (first + 1..).zip(records.chunks_exact(size as usize)) {
-            let entry = || {
+            let parsed = || {
                 Ok(Entry {
                     frame: frame.whole(record)?,
                     id: id.whole(record)?,
@@ -93,7 +93,7 @@ fn add_rows(path: &Path, trajectory: &Dataset, contents: &mut Contents) -> Resul
                     line,
                 })
             };
-            let entry = entry().map_err(|what: String| format!("row {line}: {what}"))?;
+            let entry = parsed().map_err(|what: String| format!("row {line}: {what}"))?;
             contents.entries.push(entry);
         }
     }
@@ -120,8 +120,8 @@ impl Field {
     fn named(members: &[CompoundMember], name: &'static str, size: u32) -> Result<Self, String> {
         let found = members.iter().find(|member| member.name == name);
         let member = found.ok_or_else(|| {
-            let names: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();
-            let names = shown(&names.join(", ")).to_string();
+            let own: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();
+            let names = shown(&own.join(", ")).to_string();
             format!("the records of `trajectory` have no field {name}, only {names}")
         })?;
         let (length, order, kind) = match &member.datatype {

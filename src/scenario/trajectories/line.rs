@@ -173,8 +173,8 @@ fn seconds(name: &str) -> Result<f64, String> {
 
 /// Splits a column name into its base and its unit: `x/cm`, `x[cm]`, `x(cm)`.
 fn base_and_unit(name: &str) -> (String, String) {
-    let name = name.trim_start_matches('\u{feff}').trim().to_lowercase();
-    let name = name.strip_prefix(VISWALK).unwrap_or(&name);
+    let lower = name.trim_start_matches('\u{feff}').trim().to_lowercase();
+    let name = lower.strip_prefix(VISWALK).unwrap_or(&lower);
     let (base, unit) = name.split_once(['/', '[', '(']).unwrap_or((name, ""));
     let unit = unit.trim_end_matches([']', ')']).trim();
     (base.trim().to_owned(), unit.to_owned())

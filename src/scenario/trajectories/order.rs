@@ -99,25 +99,27 @@ pub fn read_obsmat(contents: &mut Contents, wide: &Wide) {
     ));
 }
 
-/// The tracks with ids and frames in the other order, and a note, if people move as people only in this one.
-pub fn frame_first(tracks: &Tracks, contents: &mut Contents) -> Option<Tracks> {
-    let speed = tracks.median_speed();
-    if speed <= TOO_FAST || !swap(contents) {
-        return None;
+impl Tracks {
+    /// The tracks with ids and frames in the other order, and a note, if people move as people only in this one.
+    pub(super) fn frame_first(&self, contents: &mut Contents) -> Option<Self> {
+        let speed = self.median_speed();
+        if speed <= TOO_FAST || !swap(contents) {
+            return None;
+        }
+        let other = Self::of_sorted(contents, self.fps);
+        let [own, others] = [self, &other].map(straightness);
+        let slower = other.median_speed();
+        let is_plausible = slower <= TOO_FAST && others >= own;
+        if 2.0 * slower < speed && (is_plausible || others > own + STRAIGHTER) {
+            contents.notes.push(format!(
+                "its columns are taken as frame, id, x, y: people walk at {slower:.2} m/s then, and at {speed:.2} m/s \
+                 if the first column is the id; a line `# id frame x/m y/m` above them names the columns"
+            ));
+            return Some(other);
+        }
+        swap(contents);
+        None
     }
-    let other = Tracks::of_sorted(contents, tracks.fps);
-    let [own, others] = [tracks, &other].map(straightness);
-    let slower = other.median_speed();
-    let is_plausible = slower <= TOO_FAST && others >= own;
-    if 2.0 * slower < speed && (is_plausible || others > own + STRAIGHTER) {
-        contents.notes.push(format!(
-            "its columns are taken as frame, id, x, y: people walk at {slower:.2} m/s then, and at {speed:.2} m/s if \
-             the first column is the id; a line `# id frame x/m y/m` above them names the columns"
-        ));
-        return Some(other);
-    }
-    swap(contents);
-    None
 }
 
 /// Swaps ids and frames, and sorts again. Returns whether that is possible.

@@ -41,8 +41,8 @@ impl Tracks {
 
     /// Finds the steps of all people.
     pub(super) fn find_steps(&mut self) {
-        let of_people = (0..self.ids.len()).map(|p| self.counted_steps(p));
-        let of_people: Vec<BTreeMap<i64, u64>> = of_people.collect();
+        let of_people: Vec<BTreeMap<i64, u64>> =
+            (0..self.ids.len()).map(|p| self.counted_steps(p)).collect();
         let mut all = BTreeMap::new();
         for (&step, count) in of_people.iter().flatten() {
             *all.entry(step).or_insert(0) += count;
@@ -140,8 +140,8 @@ impl Tracks {
     }
 
     fn speeds(&self, p: usize) -> Vec<f64> {
-        let rows = self.rows_of(p).iter().map(|&row| row as usize);
-        let rows: Vec<(f64, Vector)> = rows
+        let numbers = self.rows_of(p).iter().map(|&row| row as usize);
+        let rows: Vec<(f64, Vector)> = numbers
             .map(|row| (self.time(self.frame_of(row)), self.position[row]))
             .collect();
         let (mut speeds, mut from) = (Vec::new(), 0);

@@ -50,11 +50,11 @@ impl Rows {
         let failed = |problem| ReadError::file(path, problem);
         contents.place = "line";
         contents.has_mass = self.columns.mass.is_some();
-        let rate = match self.columns.frame {
+        let found = match self.columns.frame {
             Some(_) => self.times.rate(),
             None => times::number(&mut contents.entries, &self.instants).transpose(),
         };
-        let rate = rate.map(|rate| options.own_rate(rate)).transpose();
+        let rate = found.map(|rate| options.own_rate(rate)).transpose();
         contents.fps = contents.fps.or(rate.map_err(failed)?.flatten());
         if contents.is_unnamed {
             order::read_obsmat(&mut contents, &self.wide);
@@ -88,8 +88,8 @@ pub fn separator(start: &[u8], is_csv: bool) -> Option<u8> {
     let start = String::from_utf8_lossy(start);
     let mut lines = start.lines().map(str::trim);
     let first = lines
-        .find(|line| !line.is_empty() && !line.starts_with(COMMENTS) && !line.starts_with(VISWALK));
-    let first = first.unwrap_or_default();
+        .find(|line| !line.is_empty() && !line.starts_with(COMMENTS) && !line.starts_with(VISWALK))
+        .unwrap_or_default();
     let separated = [';', ','].into_iter().find(|&one| first.contains(one));
     let is_header = |by: char| {
         first
@@ -127,8 +127,8 @@ fn read_columns<R: Read>(
         text.get_mut().next_line();
         number += 1;
         // Comments may be in another encoding; the numbers are still valid.
-        let line = String::from_utf8_lossy(&bytes);
-        let line = line.trim();
+        let decoded = String::from_utf8_lossy(&bytes);
+        let line = decoded.trim();
         if let Some(comment) = line.strip_prefix(['#', '%']) {
             heed(comment, &mut rows, options).map_err(|problem| failed(number, problem))?;
             continue;

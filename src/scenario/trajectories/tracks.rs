@@ -8,7 +8,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::error::ReadError;
-use super::{ReadOptions, Unit, order};
+use super::{ReadOptions, Unit};
 use engine::math::Vector;
 
 /// If the median speed is above this, m/s, the unit, the frame rate or the order of the columns is wrong: a crowd may
@@ -172,7 +172,7 @@ impl Tracks {
         contents.sort(path)?;
         let mut tracks = Self::of_sorted(&contents, fps);
         if contents.is_unnamed
-            && let Some(other) = order::frame_first(&tracks, &mut contents)
+            && let Some(other) = tracks.frame_first(&mut contents)
         {
             tracks = other;
         }

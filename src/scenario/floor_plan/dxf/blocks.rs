@@ -143,8 +143,9 @@ impl<'a> Placing<'a> {
         (insert, block): (&'a Insert, &'a Block),
         within: Within<'a>,
     ) -> Result<(), FloorPlanError> {
-        let inserted = within.map.after(&entity.plane);
-        let inserted = inserted
+        let inserted = within
+            .map
+            .after(&entity.plane)
             .after(&Map::shift(insert.at))
             .after(&Map::turn(insert.turn));
         let base = Map::shift(block.base.map(|x| -x));

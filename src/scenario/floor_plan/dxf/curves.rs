@@ -2,15 +2,13 @@
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-use super::map::Point;
+use super::map::{MOST_POINTS, Point};
 use super::spline::Spline;
 
 /// Most parts of one arc.
 const MOST_PARTS: f64 = 4096.0;
 /// Bulges smaller than this are straight.
 const STRAIGHT: f64 = 1e-9;
-/// Most points of one entity.
-pub const MOST_POINTS: usize = 1_000_000;
 
 /// A vertex of a polyline.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -102,8 +102,8 @@ pub fn content(record: &Record, letters: &Letters) -> Result<Content, FloorPlanE
             Content::Path(Path::conic(arc))
         }
         "ARC" => {
-            let angles = [record.number(50, 0.0)?, record.number(51, 360.0)?];
-            let angles = angles.map(f64::to_radians);
+            let degrees = [record.number(50, 0.0)?, record.number(51, 360.0)?];
+            let angles = degrees.map(f64::to_radians);
             let arc = Conic::arc(record.point(10)?, radius(record)?, angles);
             Content::Path(Path::conic(arc))
         }

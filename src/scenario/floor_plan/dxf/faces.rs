@@ -150,14 +150,14 @@ impl Faces {
             place: format!("near ({}, {})", at[0], at[1]),
             reason,
         };
-        let rings = boundary::rings(edges)
+        let on_grid = boundary::rings(edges)
             .map_err(|at| wrong(grid.place(at), "the boundary does not close".to_owned()))?;
         let placed = |ring: Vec<GridPoint>| -> Vec<Vector> {
             ring.into_iter()
                 .map(|p| Vector::from(grid.place(p)))
                 .collect()
         };
-        let rings: Vec<Vec<Vector>> = rings.into_iter().map(placed).collect();
+        let rings: Vec<Vec<Vector>> = on_grid.into_iter().map(placed).collect();
         let tolerance = SAME.max(4.0 * grid.step);
         assemble(&rings, self.given.iter().copied(), tolerance)
             .map_err(|(error, ring)| wrong(ring[0].into(), error.to_string()))

@@ -1,11 +1,11 @@
 //! Entities → geometries in meters.
 
 use super::blocks::{Placed, place};
-use super::curves::{MOST_POINTS, Path};
+use super::curves::Path;
 use super::entities::Content;
 use super::gaps::distance;
 use super::layers::Sorted;
-use super::map::Point;
+use super::map::{MOST_POINTS, Point};
 use super::syntax;
 use super::units::{Extent, Frame};
 use crate::floor_plan::error::FloorPlanError;

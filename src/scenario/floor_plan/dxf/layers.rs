@@ -23,8 +23,8 @@ pub fn missing(drawing: &Drawing, reading: &Reading) -> Option<String> {
         let mut layers = drawing.layers.all().iter();
         layers.any(|layer| layer.name.to_lowercase() == name.to_lowercase())
     };
-    let missing = reading.layers.keys().filter(|name| !has(name));
-    let missing: Vec<String> = missing.map(|name| format!("\"{}\"", shown(name))).collect();
+    let unknown = reading.layers.keys().filter(|name| !has(name));
+    let missing: Vec<String> = unknown.map(|name| format!("\"{}\"", shown(name))).collect();
     let note = format!(
         "`plan.layers` names {}, which the drawing does not have",
         missing.join(", ")

@@ -3,6 +3,9 @@
 /// A point of a drawing.
 pub type Point = [f64; 2];
 
+/// Most points of one entity.
+pub const MOST_POINTS: usize = 1_000_000;
+
 /// The map (x, y) → (x₀ + xₓx + xᵧy, y₀ + yₓx + yᵧy).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Map {

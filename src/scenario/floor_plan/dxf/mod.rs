@@ -101,8 +101,8 @@ pub fn drawn(bytes: &[u8], reading: &Reading) -> Result<Drawn, FloorPlanError> {
     let has_floor = items.iter().any(|item| item.kind == Kind::Floor);
     let has_walls = items.iter().any(|item| item.kind == Kind::Wall);
     if has_walls && !has_floor {
-        let rooms = rooms::rooms(&items, &mut labels, reading);
-        let rooms = rooms.map_err(|error| with(error, &sorted.left_out()))?;
+        let rooms = rooms::rooms(&items, &mut labels, reading)
+            .map_err(|error| with(error, &sorted.left_out()))?;
         shapes.extend(rooms.shapes);
         notes.extend(rooms.notes);
         gaps.extend(rooms.gaps);

@@ -90,9 +90,8 @@ fn extent(points: &[Point]) -> f64 {
 fn from_line(p: Point, a: Point, b: Point) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let squared = along[0] * along[0] + along[1] * along[1];
-    let share =
-        ((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / squared.max(f64::MIN_POSITIVE);
-    let share = share.clamp(0.0, 1.0);
+    let product = (p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1];
+    let share = (product / squared.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     distance(p, [a[0] + share * along[0], a[1] + share * along[1]])
 }
 

@@ -147,8 +147,8 @@ impl<'a> Pairs<'a> {
         let Some(line) = self.line() else {
             return Ok(None);
         };
-        let code = parsed(line).filter(|code| code.fract() == 0.0);
-        let code = code.map(|code| code as i64);
+        let whole = parsed(line).filter(|code| code.fract() == 0.0);
+        let code = whole.map(|code| code as i64);
         let Some(code) = code.filter(|code| (-5..=LARGEST_CODE).contains(code)) else {
             // Spaces and line feeds may follow the last pair.
             let is_end = line.trim_ascii().is_empty() && self.rest.trim_ascii().is_empty();
@@ -200,13 +200,13 @@ impl<'a> Pairs<'a> {
         if self.rest.is_empty() {
             return Ok(None);
         }
-        let code = match self.code_length {
+        let short = match self.code_length {
             1 => i32::from(self.bytes::<1>()?[0]),
             _ => i32::from(i16::from_le_bytes(self.bytes()?)),
         };
         let code = match self.code_length {
-            1 if code == i32::from(EXTENDED) => i32::from(i16::from_le_bytes(self.bytes()?)),
-            _ => code,
+            1 if short == i32::from(EXTENDED) => i32::from(i16::from_le_bytes(self.bytes()?)),
+            _ => short,
         };
         let at = self.at;
         let value = match code {

@@ -70,11 +70,11 @@ impl Enclosed {
 
     /// The groups but the outside, largest first, with their sizes.
     fn by_size(&self) -> Vec<(usize, f64)> {
-        let mut sizes = BTreeMap::new();
+        let mut by_group = BTreeMap::new();
         for face in 1..self.faces.count() {
-            *sizes.entry(self.group[face]).or_insert(0.0) += self.faces.size(face);
+            *by_group.entry(self.group[face]).or_insert(0.0) += self.faces.size(face);
         }
-        let mut sizes: Vec<(usize, f64)> = sizes.into_iter().collect();
+        let mut sizes: Vec<(usize, f64)> = by_group.into_iter().collect();
         sizes.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         sizes
     }
@@ -240,15 +240,15 @@ fn choice(enclosed: &Enclosed, sizes: &[(usize, f64)]) -> Result<String, FloorPl
         "walls are lines: the floor is what can be reached from {at}: {} m²; `plan.inside` says otherwise",
         rounded(size)
     );
-    let others = sizes[1..].iter().filter(|(_, size)| *size > LISTED).take(3);
-    let others = others.map(|&(group, size)| {
+    let next = sizes[1..].iter().filter(|(_, size)| *size > LISTED).take(3);
+    let described = next.map(|&(group, size)| {
         Ok(format!(
             "{} m² around {}",
             rounded(size),
             shown_point(enclosed.point_in(group)?)
         ))
     });
-    let others: Vec<String> = others.collect::<Result<_, FloorPlanError>>()?;
+    let others: Vec<String> = described.collect::<Result<_, FloorPlanError>>()?;
     if !others.is_empty() {
         note += &format!(". Other enclosed areas: {}", others.join(", "));
     }

@@ -1,7 +1,6 @@
 //! Splines: rational B-splines, and cubic splines through points.
 
-use super::curves::MOST_POINTS;
-use super::map::Point;
+use super::map::{MOST_POINTS, Point};
 
 /// The highest degree.
 const MOST_DEGREE: usize = 20;

@@ -111,8 +111,8 @@ fn heights_noted(rooms: &[Room]) -> Option<String> {
 
 /// A note on stairs, if there are any.
 fn stairs_noted(rooms: &[Room]) -> Option<String> {
-    let stairs = rooms.iter().filter(|room| room.is_stair);
-    let stairs: Vec<&str> = stairs.map(|room| &*room.name).collect();
+    let with_stairs = rooms.iter().filter(|room| room.is_stair);
+    let stairs: Vec<&str> = with_stairs.map(|room| &*room.name).collect();
     let first = shown(stairs.first()?);
     let more = match stairs.len() {
         1 => String::new(),
