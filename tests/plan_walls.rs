@@ -197,7 +197,10 @@ fn inner_walls_and_screens_of_a_room_stand_in_it() {
 #[test]
 fn lines_of_geojson_and_well_known_text_are_walls() {
     let floor = json!([[[0, 0], [10, 0], [10, 10], [0, 10], [0, 0]]]);
-    let feature = |kind: &str, geometry: Value| json!({"type": "Feature", "properties": {"kind": kind}, "geometry": geometry});
+    let feature = |kind: &str, geometry: Value| {
+        let properties = json!({"kind": kind});
+        json!({"type": "Feature", "properties": properties, "geometry": geometry})
+    };
     let document = json!({"type": "FeatureCollection", "features": [
         feature("floor", json!({"type": "Polygon", "coordinates": floor})),
         feature("wall", json!({"type": "LineString", "coordinates": [[0, 6], [7, 6], [7, 9]]})),
@@ -233,7 +236,8 @@ fn lines_of_geojson_and_well_known_text_are_walls() {
 #[test]
 fn an_obstacle_of_two_points_is_a_wall() {
     let document = json!({
-        "walkable_area": [[[[0, 0], [10, 0], [10, 10], [0, 10]]]], "obstacles": [[[5, 2], [5, 8]], [[7, 3], [8, 3], [7, 3]]],
+        "walkable_area": [[[[0, 0], [10, 0], [10, 10], [0, 10]]]],
+        "obstacles": [[[5, 2], [5, 8]], [[7, 3], [8, 3], [7, 3]]],
         "agents": [{"position": [3, 5], "goal": [9, 5]}], "profile": "steer+sph", "duration_secs": 10,
     });
     let scenario = Scenario::parse(&document.to_string(), "screen.json", &[]).unwrap();
@@ -248,7 +252,8 @@ fn an_obstacle_of_two_points_is_a_wall() {
 #[test]
 fn walls_along_the_edge_of_the_floor_take_no_room_from_it() {
     // The outline of a room is drawn as a wall, too, and once more a few millimeters beside it.
-    let text = "POLYGON ((0 0, 10 0, 10 10, 0 10)); LINESTRING (0 0, 10 0, 10 10, 0 10, 0 0); LINESTRING (0.004 0, 0.004 10)";
+    let text = "POLYGON ((0 0, 10 0, 10 10, 0 10)); LINESTRING (0 0, 10 0, 10 10, 0 10, 0 0); \
+                LINESTRING (0.004 0, 0.004 10)";
     let plan = parse(text).unwrap();
     assert_eq!(area(&plan), 100.0);
     assert_eq!(plan.notes, Vec::<String>::new());
@@ -323,8 +328,8 @@ fn stairs_are_noted() {
     let text = room("", "caption=\"stairwell\"")
         .replace("<subroom id=\"0\">", "<subroom id=\"0\" class=\"stair\">");
     let notes = parse(&text).unwrap().notes;
-    let said = "stairs are floor here, on which people walk as on the flat: room 0 (stairwell), subroom 0; give a `zone` \
-                with a `speed_factor`";
+    let said = "stairs are floor here, on which people walk as on the flat: room 0 (stairwell), subroom 0; give a \
+                `zone` with a `speed_factor`";
     assert_eq!(notes, [said]);
 }
 

@@ -1,4 +1,5 @@
-//! Any bytes either are a valid DXF, with a plan whose floor and obstacles are valid, or give an error, without a panic.
+//! Any bytes either are a valid DXF, with a plan whose floor and obstacles are valid, or give an error, without a
+//! panic.
 
 #![no_main]
 

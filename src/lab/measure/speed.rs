@@ -8,10 +8,10 @@ use scenario::trajectories::Tracks;
 /// Default number of recorded frames that a velocity looks back and ahead, common among PedPy's users.
 pub const FRAMES: i64 = 5;
 
-/// The velocity of every row, m/s: a central difference from `reach` recorded frames before to `reach` after; of a person
-/// with another step than the others over the same time. If one of the two frames is missing, a one-sided difference; if
-/// both are missing, `None`. A frame also counts as missing if the person is absent in between: no motion is measured
-/// across gaps.
+/// The velocity of every row, m/s: a central difference from `reach` recorded frames before to `reach` after; of a
+/// person with another step than the others over the same time. If one of the two frames is missing, a one-sided
+/// difference; if both are missing, `None`. A frame also counts as missing if the person is absent in between: no
+/// motion is measured across gaps.
 pub fn velocities(tracks: &Tracks, reach: i64) -> Vec<Option<Vector>> {
     let computed = (0..tracks.ids.len()).into_par_iter().map(|p| {
         let rows = tracks.rows_of(p).iter().map(|&row| row as usize);

@@ -127,14 +127,15 @@ pub struct File {
     /// Parameters of all profiles; they override those given in a profile.
     pub parameters: Parameters,
     /// Where agents can walk, corners in meters: a list of polygons, each a list of rings (the outline, then the
-    /// holes), or the name of a DXF, GeoJSON, WKT or JuPedSim XML file. Everything around it is solid. Default: everywhere.
+    /// holes), or the name of a DXF, GeoJSON, WKT or JuPedSim XML file. Everything around it is solid. Default:
+    /// everywhere.
     #[schemars(schema_with = "walkable_area")]
     pub walkable_area: Option<Vec<Vec<Ring>>>,
     /// How the files of `walkable_area` and `obstacles` are read: what they do not say themselves.
     pub plan: Option<Reading>,
     /// Solid bodies, corners in meters, in either orientation: a list of polygons, each a list of corners or of rings
-    /// (the outline, then the holes), or the name of a DXF, GeoJSON, WKT or JuPedSim XML file. Corners that enclose no area, such
-    /// as two points, are a wall of 1 cm.
+    /// (the outline, then the holes), or the name of a DXF, GeoJSON, WKT or JuPedSim XML file. Corners that enclose
+    /// no area, such as two points, are a wall of 1 cm.
     #[schemars(schema_with = "obstacles")]
     pub obstacles: Vec<Outline>,
     /// The scene repeats itself without end.
@@ -295,5 +296,6 @@ fn obstacles(generator: &mut SchemaGenerator) -> Schema {
 }
 
 fn floor_plan() -> Value {
-    json!({"type": "string", "description": "A DXF, GeoJSON, WKT or JuPedSim XML file, relative to this file's folder."})
+    let description = "A DXF, GeoJSON, WKT or JuPedSim XML file, relative to this file's folder.";
+    json!({"type": "string", "description": description})
 }

@@ -65,7 +65,8 @@ pub enum Geometry {
 }
 
 impl Geometry {
-    /// Adds its parts to `shapes`, each with its place and kind. Parts without points are left out, if there are others.
+    /// Adds its parts to `shapes`, each with its place and kind. Parts without points are left out, if there are
+    /// others.
     ///
     /// # Errors
     /// No part has points.

@@ -77,7 +77,8 @@ pub fn tracks(path: &Path, given: &FromData) -> Result<(Tracks, f64), Problem> {
     }
     if tracks.median_speed() > TOO_FAST {
         let reason = format!(
-            "half of all steps in {file} are faster than {TOO_FAST} m/s; set `unit` ({}) and `fps` to those of the file",
+            "half of all steps in {file} are faster than {TOO_FAST} m/s; set `unit` ({}) and `fps` to those of \
+             the file",
             UNITS.join(", ")
         );
         return Err(Problem::new("trajectory", reason));

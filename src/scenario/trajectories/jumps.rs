@@ -10,8 +10,8 @@ const FARTHEST: f64 = 1.0;
 const MOST: f64 = 0.05;
 
 impl Tracks {
-    /// The tracks with a new person after each jump, if jumps are rare, and a note; `None` without jumps. `contents` are
-    /// those of the tracks.
+    /// The tracks with a new person after each jump, if jumps are rare, and a note; `None` without jumps. `contents`
+    /// are those of the tracks.
     pub(super) fn parted(&self, contents: &mut Contents) -> Option<(Option<Self>, String)> {
         let all = (0..self.ids.len()).flat_map(|p| self.moves(p).map(move |rows| (p, rows)));
         let jumps: Vec<(usize, [usize; 2])> = all.filter(|(_, rows)| self.is_jump(*rows)).collect();

@@ -37,8 +37,8 @@ impl Wide {
     }
 }
 
-/// Takes the columns as those of `obsmat.txt` if there are eight, z and its velocity are 0, and the velocities are those
-/// of the positions in this order. The velocities also say the frame rate.
+/// Takes the columns as those of `obsmat.txt` if there are eight, z and its velocity are 0, and the velocities are
+/// those of the positions in this order. The velocities also say the frame rate.
 pub fn read_obsmat(contents: &mut Contents, wide: &Wide) {
     let is_flat = wide
         .rows

@@ -99,7 +99,8 @@ impl Tracks {
         let empty = common.span() - common.frames.len() as u64;
         if off > 0 {
             self.notes.push(format!(
-                "{off} of {} rows are in frames of their own: in the common frames places between rows are interpolated",
+                "{off} of {} rows are in frames of their own: in the common frames places between rows are \
+                 interpolated",
                 self.len()
             ));
         }
@@ -132,8 +133,8 @@ impl Tracks {
         ))
     }
 
-    /// The median speed over all moves that take at least 0.4 s, or the whole way of people who are there for less, m/s;
-    /// 0 without moves.
+    /// The median speed over all moves that take at least 0.4 s, or the whole way of people who are there for less,
+    /// m/s; 0 without moves.
     pub fn median_speed(&self) -> f64 {
         let speeds = (0..self.ids.len()).flat_map(|p| self.speeds(p));
         median(speeds.collect()).unwrap_or(0.0)

@@ -159,8 +159,8 @@ fn refuse_overlaps(rooms: &[Room], shapes: &[Shape]) -> Result<(), FloorPlanErro
             let shared: f64 = both.iter().map(Area::area).sum();
             if shared >= OVERLAP {
                 let reason = format!(
-                    "storeys overlap in plan: {} ({}) and {} ({}) share {shared:.1} m²; a floor has no storeys: take one by \
-                     its name or height with `plan.storey`, or move them apart",
+                    "storeys overlap in plan: {} ({}) and {} ({}) share {shared:.1} m²; a floor has no storeys: take \
+                     one by its name or height with `plan.storey`, or move them apart",
                     shown(&other.name),
                     other.height(),
                     shown(&one.name),
