@@ -13,6 +13,7 @@ mod cli;
 mod cli_geometry;
 mod colors;
 mod command_lines;
+mod convert;
 mod differences;
 mod draw;
 mod estimate;
