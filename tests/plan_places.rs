@@ -83,6 +83,25 @@ fn names_stand_for_the_geometry_of_the_plan() {
     );
 }
 
+// Written after the method was fixed.
+#[test]
+fn an_exit_area_across_a_corridor_has_its_line_halfway() {
+    let folder = TempDir::new().unwrap();
+    let corridor = json!({"type": "FeatureCollection", "features": [
+        feature("corridor", "floor", rectangle([0.0, 20.0], [0.0, 3.0])),
+        feature("out", "exit", rectangle([8.0, 10.0], [-1.0, 4.0])),
+    ]});
+    fs::write(folder.path().join("plan.geojson"), corridor.to_string()).unwrap();
+    let document = json!({"walkable_area": "plan.geojson", "exits": ["out"], "agents": []});
+    let path = folder.path().join("corridor.json");
+    fs::write(&path, document.to_string()).unwrap();
+    let line = Scenario::load(&path, &[]).unwrap().document["exits"][0]["line"].clone();
+    let mut ends: Vec<[f64; 2]> = serde_json::from_value(line).unwrap();
+    ends.sort_by(|a, b| a[1].total_cmp(&b[1]));
+    let off = ends.iter().flatten().zip([9.0, 0.0, 9.0, 3.0]).map(|(x, y)| (x - y).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-9, "{ends:?}");
+}
+
 #[test]
 fn a_corrected_drawing_needs_no_change_of_the_scenario() {
     let top = |wide: f64| load(wide, &keys()).unwrap().document["exits"][0]["line"][1].clone();

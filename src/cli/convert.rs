@@ -68,7 +68,7 @@ pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
     )
 }
 
-/// A scenario with the exits, doors, zones and crowds of a plan.
+/// A scenario with the exits and crowds of a plan.
 fn begun(
     plan: &Path,
     draft: &Draft,

@@ -1,12 +1,17 @@
 //! What a plan names: areas, lines and points that a scenario refers to.
 
-use engine::math::{Vector, bounds, sides};
+use engine::math::{Vector, bounds, direction, sides};
 
 use super::error::FloorPlanError;
 use super::kind::Kind;
 use super::shape::{Form, Shape};
 use super::thin::{self, Side};
 use engine::geometry::Area;
+
+/// Two sides of an area face each other if the sine of the angle between them is less than this,
+const SLANTED: f64 = 0.3;
+/// and the shorter one is longer than this part of the longer one.
+const FACING: f64 = 0.5;
 
 /// A named area, line or point of a plan.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,22 +62,42 @@ impl Place {
     }
 }
 
-/// The line at which people who come from the floor enter the area of a place: the longest part of its outline with
-/// floor on both sides; if there is none, the longest along the edge of the floor. `None` if it is away from the floor.
+/// The line at which people who come from the floor are in the area of a place: the longest part of its outline with
+/// floor on both sides; halfway between the two longest, if these face each other; if there is none, the longest part
+/// along the edge of the floor. `None` if it is away from the floor.
 pub fn across(place: &Place, floor: &[Area]) -> Option<[Vector; 2]> {
     let closed = place.rings.iter().map(|ring| {
         let first = ring.first().copied();
         ring.iter().copied().chain(first).collect::<Vec<_>>()
     });
     let lines: Vec<Vec<[f64; 2]>> = closed.collect();
-    let length = |[a, b]: &[Vector; 2]| (b - a).norm();
-    let longest = |parts: Vec<[Vector; 2]>| {
-        parts
-            .into_iter()
-            .max_by(|a, b| length(a).total_cmp(&length(b)))
+    let longest_first = |side: Side| {
+        let mut parts = thin::parts(&lines, floor, side);
+        parts.sort_by(|a, b| length(b).total_cmp(&length(a)));
+        parts.into_iter()
     };
-    longest(thin::parts(&lines, floor, Side::Within))
-        .or_else(|| longest(thin::parts(&lines, floor, Side::Edge)))
+    let mut within = longest_first(Side::Within);
+    match (within.next(), within.next()) {
+        (Some(one), Some(other)) => Some(between(one, other).unwrap_or(one)),
+        (Some(one), None) => Some(one),
+        (None, _) => longest_first(Side::Edge).next(),
+    }
+}
+
+fn length([a, b]: &[Vector; 2]) -> f64 {
+    (b - a).norm()
+}
+
+/// The line halfway between two sides that face each other; `None` if they do not.
+fn between(one: [Vector; 2], other: [Vector; 2]) -> Option<[Vector; 2]> {
+    let [ahead, back] = [one, other].map(|[a, b]| direction(b - a));
+    let faces = ahead.perp(&back).abs() < SLANTED && length(&other) > FACING * length(&one);
+    let [c, d] = if ahead.dot(&back) < 0.0 {
+        [other[1], other[0]]
+    } else {
+        other
+    };
+    faces.then(|| [(one[0] + c) * 0.5, (one[1] + d) * 0.5])
 }
 
 /// The named shapes. Areas are checked.

@@ -10,37 +10,22 @@ use crate::read::draft::Draft;
 /// The density of crowds in areas of a plan that say no number of people, P/m².
 const DENSITY: f64 = 1.0;
 
-/// A scenario of what a plan names, as a beginning: people leave its crowds by its exits. Elements of lists are names
-/// of its places.
+/// A scenario of what a plan names, as a beginning: people leave its crowds by its exits. Elements of lists are names of
+/// its places.
 pub fn beginning(plan: &str, places: &[Place]) -> Value {
-    let named = |kind: Kind| -> Vec<&str> {
-        let of_kind = places.iter().filter(|place| place.kind == kind);
-        of_kind.map(|place| place.name.as_str()).collect()
-    };
+    let of_kind = |kind: Kind| places.iter().filter(move |place| place.kind == kind);
+    let exits: Vec<&str> = of_kind(Kind::Exit)
+        .map(|place| place.name.as_str())
+        .collect();
     let mut document = json!({"profile": "steer+sph", "duration_secs": 600, "walkable_area": plan});
-    for (list, kind) in [
-        ("exits", Kind::Exit),
-        ("doors", Kind::Door),
-        ("zones", Kind::Zone),
-    ] {
-        let names = named(kind);
-        if !names.is_empty() {
-            document[list] = json!(names);
-        }
+    if exits.is_empty() {
+        return document;
     }
-    let lines = places
-        .iter()
-        .filter(|place| place.form == Form::Line && place.kind == Kind::Waypoint);
-    let waypoints: Vec<&str> = lines.map(|place| place.name.as_str()).collect();
-    if !waypoints.is_empty() {
-        document["waypoints"] = json!(waypoints);
-    }
-    let areas = places
-        .iter()
-        .filter(|place| place.form == Form::Area && place.kind == Kind::Crowd);
+    document["exits"] = json!(exits);
+    let areas = of_kind(Kind::Crowd).filter(|place| place.form == Form::Area);
     let crowd = |place: &Place| json!({"name": place.name, "area": place.name, "density": DENSITY});
     let crowds: Vec<Value> = areas.map(crowd).collect();
-    if !crowds.is_empty() && document.get("exits").is_some() {
+    if !crowds.is_empty() {
         document["crowds"] = json!(crowds);
         document["stop"] = json!({"when_empty": true});
     }
