@@ -98,7 +98,11 @@ fn an_exit_area_across_a_corridor_has_its_line_halfway() {
     let line = Scenario::load(&path, &[]).unwrap().document["exits"][0]["line"].clone();
     let mut ends: Vec<[f64; 2]> = serde_json::from_value(line).unwrap();
     ends.sort_by(|a, b| a[1].total_cmp(&b[1]));
-    let off = ends.iter().flatten().zip([9.0, 0.0, 9.0, 3.0]).map(|(x, y)| (x - y).abs());
+    let off = ends
+        .iter()
+        .flatten()
+        .zip([9.0, 0.0, 9.0, 3.0])
+        .map(|(x, y)| (x - y).abs());
     assert!(off.fold(0.0, f64::max) < 1e-9, "{ends:?}");
 }
 

@@ -94,7 +94,9 @@ const OTHER_PARAMETERS: [&str; 5] = [
 
 /// Whether a document is a scenario of the web app, by its keys.
 pub fn is_web_app(document: &Value) -> bool {
-    document["exits"].is_object()
+    let exits = document["exits"].as_object();
+    let is_outlined = |exit: &Value| exit["coordinates"].is_array();
+    exits.is_some_and(|exits| exits.values().any(is_outlined))
         || document["distributions"].is_object()
         || document["config"]["simulation_settings"].is_object()
 }
