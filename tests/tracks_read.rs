@@ -425,12 +425,13 @@ fn advice_on_a_missing_frame_rate_names_the_option_of_the_command() {
         (&["draw", "a.txt"], "--trajectory-fps"),
         (&["draw", "a.txt", "--egress"], "--trajectory-fps"),
     ] {
-        let said = stderr(&run_in(folder.path(), arguments));
+        let arguments = [arguments, &["--force"]].concat();
+        let said = stderr(&run_in(folder.path(), &arguments));
         assert!(
             said.trim_end().ends_with(&format!("; give {option}")),
             "{said}"
         );
-        let given = [arguments, &[option, "25", "--force"]].concat();
+        let given = [arguments, vec![option, "25"]].concat();
         succeeds(folder.path(), &given);
     }
 }

@@ -91,12 +91,9 @@ pub fn separator(start: &[u8], is_csv: bool) -> Option<u8> {
         .find(|line| !line.is_empty() && !line.starts_with(COMMENTS) && !line.starts_with(VISWALK))
         .unwrap_or_default();
     let separated = [';', ','].into_iter().find(|&one| first.contains(one));
-    let is_header = |by: char| {
-        first
-            .split(by)
-            .next()
-            .is_some_and(|cell| number(cell).is_none())
-    };
+    let is_number = |cell: Option<&str>| cell.is_some_and(|cell| number(cell).is_some());
+    let begins = is_number(first.split_whitespace().next());
+    let is_header = |by: char| !begins && !is_number(first.split(by).next());
     match separated {
         Some(by) if is_csv || is_header(by) => Some(by as u8),
         _ if is_csv && !matches!(Columns::named(&split(first)), Ok(Some(_))) => Some(b','),
