@@ -10,8 +10,8 @@ use crate::read::draft::Draft;
 /// The density of crowds in areas of a plan that say no number of people, P/m².
 const DENSITY: f64 = 1.0;
 
-/// A scenario of what a plan names, as a beginning: people leave its crowds by its exits. Elements of lists are names of
-/// its places.
+/// A scenario of what a plan names, as a beginning: people leave its crowds by its exits. Elements of lists are names
+/// of its places.
 pub fn beginning(plan: &str, places: &[Place]) -> Value {
     let of_kind = |kind: Kind| places.iter().filter(move |place| place.kind == kind);
     let exits: Vec<&str> = of_kind(Kind::Exit)
