@@ -1,5 +1,7 @@
 //! What a plan names: areas, lines and points that a scenario refers to.
 
+use std::collections::BTreeMap;
+
 use engine::math::{Vector, bounds, direction, sides};
 
 use super::error::FloorPlanError;
@@ -100,14 +102,23 @@ fn between(one: [Vector; 2], other: [Vector; 2]) -> Option<[Vector; 2]> {
     faces.then(|| [(one[0] + c) * 0.5, (one[1] + d) * 0.5])
 }
 
-/// The named shapes. Areas are checked.
+/// The named shapes. Those that are no part of the floor plan and have no name are numbered: `exit 1`. Areas are checked.
 ///
 /// # Errors
-/// An area that crosses itself, or a line of one point.
+/// An area that crosses itself.
 pub fn places(shapes: &[Shape]) -> Result<Vec<Place>, FloorPlanError> {
+    let mut unnamed: BTreeMap<&str, usize> = BTreeMap::new();
     let mut places = Vec::new();
     for shape in shapes {
-        let Some(name) = &shape.name else { continue };
+        let numbered = || {
+            let number = unnamed.entry(shape.kind.word()).or_default();
+            *number += 1;
+            format!("{} {number}", shape.kind.word())
+        };
+        let own = shape.name.clone();
+        let Some(name) = own.or_else(|| (!shape.kind.is_built()).then(numbered)) else {
+            continue;
+        };
         let rings = match shape.form {
             Form::Area => {
                 let rings = shape.area()?.rings();
@@ -118,7 +129,7 @@ pub fn places(shapes: &[Shape]) -> Result<Vec<Place>, FloorPlanError> {
             Form::Line | Form::Point => shape.rings.clone(),
         };
         places.push(Place {
-            name: name.clone(),
+            name,
             kind: shape.kind,
             form: shape.form,
             rings,
