@@ -399,12 +399,12 @@ fn a_scenario_gives_the_unit_and_the_origin_of_its_plan() {
         "{furthest}"
     );
     let wrong = floor_plan::Reading {
-        unit: Some("yd".to_owned()),
+        unit: Some("rod".to_owned()),
         ..Default::default()
     };
     let error = floor_plan::read_as(&path, &wrong).unwrap_err().to_string();
     assert!(
-        error.contains("`yd` is no unit of plans; write m, cm, mm, ft or in"),
+        error.contains("`rod` is no unit of plans; write m, cm, mm, ft or in"),
         "{error}"
     );
 }

@@ -169,7 +169,7 @@ fn every_documented_key_is_accepted() {
     let text = |key: &str| match key {
         "name" | "description" => "word",
         "coarse_every" | "population_seed" | "behavior_seed" => "3",
-        "parameters" | "stop" => "{}",
+        "parameters" | "stop" | "plan" => "{}",
         "goal" => "[1, 2]",
         "from" => "{\"people\": [[1, 0, 2, 2, 0, 0]], \"goal\": [5, 5]}",
         "periodic" => "{\"axis\": \"x\", \"length\": 20}",

@@ -103,10 +103,16 @@ pub fn is_parameter(key: &str) -> bool {
     names::<Parameters>().contains(&key)
 }
 
-/// Whether the value of `key` is any text, never parsed as JSON.
+/// Whether the value of `key`, such as `name` or `plan.storey`, is any text, never parsed as JSON.
 pub fn is_text(key: &str) -> bool {
-    let schema = property(key);
-    allows(schema, "string") && schema.get("enum").is_none()
+    let mut parts = key.split('.');
+    let first = property(parts.next().unwrap_or_default());
+    let of_key = parts.fold(first, |outer, part| {
+        let mut objects = alternatives(outer).into_iter().flatten();
+        let object = objects.next().unwrap_or(outer);
+        &resolved(object)["properties"][part]
+    });
+    allows(of_key, "string") && of_key.get("enum").is_none()
 }
 
 /// Whether the value of `key` is an object that may be empty.

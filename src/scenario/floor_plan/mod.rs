@@ -52,7 +52,7 @@ use engine::geometry::{Area, Polygon, PolygonError, Ring};
 use engine::math::bounds;
 use places::places;
 use reading::Drawn;
-pub use thin::THICKNESS;
+pub use thin::{THICKNESS, encloses_nothing};
 
 /// The area that a person needs to stand, m².
 const STANDING_ROOM: f64 = 0.18;
@@ -233,13 +233,14 @@ impl FloorPlan {
         shape.area().cloned()
     }
 
-    /// The bodies of a wall along a line, one for each of its straight parts, if `points` enclose no area.
-    pub fn wall(points: &[[f64; 2]]) -> Option<Vec<Area>> {
+    /// The bodies of a wall along a line; `None` if `points` enclose an area.
+    ///
+    /// # Errors
+    /// Those of [`free`].
+    pub fn wall(points: &[[f64; 2]]) -> Result<Option<Vec<Area>>, FloorPlanError> {
         let line = Shape::line(String::new(), points.to_vec(), Kind::Wall);
-        let is_line = thin::encloses_nothing(points);
-        thin::bodies(&[line], &[])
-            .ok()
-            .filter(|bodies| is_line && !bodies.is_empty())
+        let bodies = thin::encloses_nothing(points).then(|| thin::bodies(&[line], &[]));
+        bodies.transpose()
     }
 
     /// The solid bodies of the plan: the surroundings of the walkable area, then the obstacles.

@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_untagged::UntaggedEnumVisitor;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::error::FloorPlanError;
 use super::kind::Kind;
@@ -34,28 +33,13 @@ pub struct Reading {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1))]
     pub gap: Option<f64>,
-    /// The storey that is read, of several: its name or its height in meters. Default: all, if they do not overlap.
+    /// The storey that is read, of several: its name, or its height in meters as a text. Default: all, if they do not overlap.
     #[serde(
         skip_serializing_if = "Option::is_none",
         deserialize_with = "name_or_height"
     )]
     #[schemars(schema_with = "storey")]
     pub storey: Option<String>,
-}
-
-fn storey(_: &mut SchemaGenerator) -> Schema {
-    json_schema!({"type": ["string", "number", "null"]})
-}
-
-fn name_or_height<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D::Error> {
-    UntaggedEnumVisitor::new()
-        .expecting("the name of a storey, or its height in meters")
-        .unit(|| Ok(None))
-        .string(|name| Ok(Some(name.to_owned())))
-        .f64(|height| Ok(Some(height.to_string())))
-        .u64(|height| Ok(Some(height.to_string())))
-        .i64(|height| Ok(Some(height.to_string())))
-        .deserialize(deserializer)
 }
 
 /// What the names of layers mean that scenarios leave out.

@@ -7,6 +7,7 @@
 use super::error::FloorPlanError;
 use super::kind::Kind;
 use super::shape::{Form, SAME, Shape};
+use super::unite;
 use engine::geometry::{Area, AreaIndex, Polygon, PolygonError, Ring};
 use engine::math::{Vector, bounds, direction, perpendicular, sides};
 
@@ -79,18 +80,25 @@ fn stretches(points: &[[f64; 2]]) -> impl Iterator<Item = Stretch> {
     long.map(|ends| Stretch { ends })
 }
 
-/// Whether points are on a line, or there and back.
+/// Whether points are on a line, or lead there and back, so that they enclose nothing.
 pub fn encloses_nothing(points: &[[f64; 2]]) -> bool {
-    let points: Vec<Vector> = points.iter().map(|&p| p.into()).collect();
-    let Some(&first) = points.first() else {
+    let mut path: Vec<Vector> = points.iter().map(|&p| p.into()).collect();
+    let is_same = |a: &Vector, b: &Vector| (a - b).norm() < SAME;
+    path.dedup_by(|next, last| is_same(last, next));
+    while path.len() > 1 && path.last().is_some_and(|last| is_same(last, &path[0])) {
+        path.pop();
+    }
+    let farthest = path.iter().copied().max_by(|a, b| {
+        let [one, other] = [a, b].map(|p| (p - path[0]).norm());
+        one.total_cmp(&other)
+    });
+    let Some(far) = farthest.filter(|far| path.len() > 1 && !is_same(far, &path[0])) else {
         return false;
     };
-    let turned: f64 = sides(&points)
-        .map(|(a, b)| (a - first).perp(&(b - first)))
-        .sum();
-    let length: f64 = sides(&points).map(|(a, b)| (b - a).norm()).sum();
-    let different = points.iter().any(|p| (p - first).norm() > SAME);
-    different && turned.abs() <= SAME * length
+    let along = direction(far - path[0]);
+    let is_straight = path.iter().all(|p| along.perp(&(p - path[0])).abs() < SAME);
+    let count = path.len();
+    is_straight || (1..count).all(|k| is_same(&path[k], &path[count - k]))
 }
 
 /// The bodies of the walls among `shapes` that are lines: of their parts with floor on both sides, or of all of them if
@@ -115,10 +123,12 @@ pub fn bodies(shapes: &[Shape], floor: &[Area]) -> Result<Vec<Area>, FloorPlanEr
         .collect();
     let body = |wall: &Stretch| body(wall, inner.iter().chain(&site.edges));
     let bodies: Result<Vec<Area>, PolygonError> = inner.iter().map(body).collect();
-    bodies.map_err(|error| FloorPlanError::Geometry {
+    let bodies = bodies.map_err(|error| FloorPlanError::Geometry {
         place: "walls that are lines".to_owned(),
         reason: error.to_string(),
-    })
+    })?;
+    // A wall that is drawn twice stands once.
+    unite::without(&bodies, &[])
 }
 
 /// The parts of lines on one side of the floor.

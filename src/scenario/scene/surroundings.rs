@@ -3,7 +3,7 @@
 use crate::error::{Problem, Under};
 use crate::file::File;
 use crate::floor_plan;
-use crate::floor_plan::{FloorPlan, Kind, Shape};
+use crate::floor_plan::{FloorPlan, Kind, Shape, encloses_nothing};
 use crate::keys::shapes::{Outline, Point, Ring as GivenRing};
 use crate::scene::openings::{BEHIND, Door, OVERLAP, Opening, WIDE_AT, openings};
 use crate::scene::periodic;
@@ -19,12 +19,22 @@ const MOST_CORNERS: usize = 20_000;
 /// Most walls of a scenario.
 const MOST_WALLS: u64 = 1_000_000;
 
-/// The number of walls of a scene: one per corner, in a periodic scene of three periods.
+/// The most sides of the body of a wall that is a line, for each of its points.
+const SIDES: u64 = 4;
+
+/// The number of walls of a scene: one per corner, in a periodic scene of three periods; more for obstacles that are
+/// lines.
 pub fn walls(file: &File) -> u64 {
     let bodies = file.obstacles.iter().flat_map(Outline::rings);
-    let rings = bodies.chain(file.walkable_area.iter().flatten().flatten());
-    let corners: u64 = rings.map(|ring| ring.0.len() as u64).sum();
-    corners * if file.periodic.is_some() { 3 } else { 1 }
+    let of_body = |ring: &GivenRing| {
+        let points: Vec<[f64; 2]> = ring.0.iter().map(|&Point(point)| point).collect();
+        let sides = if encloses_nothing(&points) { SIDES } else { 1 };
+        sides * ring.0.len() as u64
+    };
+    let floor = file.walkable_area.iter().flatten().flatten();
+    let corners: u64 = floor.map(|ring| ring.0.len() as u64).sum();
+    let all = corners + bodies.map(of_body).sum::<u64>();
+    all * if file.periodic.is_some() { 3 } else { 1 }
 }
 
 /// Notes on obstacles off the floor, and on floors inside other floors. None in a periodic scene, where a polygon
@@ -41,7 +51,7 @@ pub fn without_effect(file: &File) -> Result<Vec<String>, Problem> {
     for (k, given) in file.obstacles.iter().enumerate() {
         let place = format!("{OBSTACLES}[{k}]");
         let rings = rings(given.rings())?;
-        let is_wall = rings.iter().any(|ring| FloorPlan::wall(ring).is_some());
+        let is_wall = rings.iter().any(|ring| encloses_nothing(ring));
         if !is_wall {
             shapes.push(Shape::new(place, rings, Kind::Obstacle));
         }
@@ -132,8 +142,7 @@ fn obstacle(given: &Outline, period: Option<&Period>) -> Result<Vec<Polygon>, Pr
         return periodic::bodies(&rings(given.rings())?, period);
     }
     if let Outline::Ring(ring) = given {
-        let bodies = FloorPlan::wall(&points(ring)?);
-        if let Some(bodies) = bodies {
+        if let Some(bodies) = FloorPlan::wall(&points(ring)?)? {
             let solid = bodies.into_iter().map(Polygon::filling);
             return Ok(solid.collect::<Result<_, _>>()?);
         }

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use super::error::ReadError;
 use super::line::number;
+use super::rows::{Key, Row};
 use super::text::{Table, separator, text};
 use super::{Format, Tracks, open};
 
@@ -22,11 +23,6 @@ pub struct Column {
     /// The value of each row of the tracks, NaN where there is no number; empty if it was not read.
     pub values: Vec<f64>,
 }
-
-/// A row: what names it, and its values. It is the line of a text, and the id and the frame in a database.
-pub(super) type Row<K> = (K, Vec<f64>);
-/// The id and the frame of a row in a database.
-pub(super) type Key = (i64, i64);
 
 /// The columns with values of people of a CSV or SQLite file; the values of `wanted` and of the radius are read. Of
 /// files in HDF5 and text with blanks only positions are read.

@@ -19,6 +19,7 @@ mod jumps;
 mod line;
 mod order;
 mod places;
+mod rows;
 #[cfg(feature = "program")]
 mod sqlite;
 mod steps;

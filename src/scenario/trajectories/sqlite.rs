@@ -6,8 +6,8 @@ use std::path::Path;
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, OpenFlags, Row as Values};
 
-use super::columns::{Key, Row};
 use super::error::ReadError;
+use super::rows::{Key, Row};
 use super::tracks::{Contents, Entry, Tracks};
 use super::{ReadOptions, Unit, frame_rate};
 use engine::math::Vector;
