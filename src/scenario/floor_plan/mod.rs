@@ -334,9 +334,9 @@ impl FloorPlan {
 
 /// The names of rooms and obstacles.
 fn names(shapes: &[Shape]) -> Result<Vec<Label>, FloorPlanError> {
-    let areas = shapes
-        .iter()
-        .filter(|shape| shape.form == Form::Area && shape.kind.is_built());
+    let areas = shapes.iter().filter(|shape| {
+        shape.form == Form::Area && (shape.kind.is_built() || shape.kind == Kind::Place)
+    });
     let mut names = Vec::new();
     for shape in areas {
         names.extend(shape.label(shape.area()?));

@@ -34,11 +34,7 @@ pub struct Reading {
     #[schemars(range(min = 0, max = 1))]
     pub gap: Option<f64>,
     /// The storey that is read, of several: its name, or its height in meters as a text. Default: all, if they do not overlap.
-    #[serde(
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "name_or_height"
-    )]
-    #[schemars(schema_with = "storey")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub storey: Option<String>,
 }
 

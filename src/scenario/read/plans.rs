@@ -76,7 +76,12 @@ impl Plans {
             plans.add(document, key, &plan);
             floor.append(&mut plan.walkable);
         }
-        places::enter(document, &plans.places, &floor)?;
+        let entered = places::enter(document, &plans.places, &floor);
+        entered.map_err(|problem| {
+            // How the plan was read may explain a name that it lacks.
+            let read = notes.iter().map(|note| format!("; note: {note}"));
+            Problem::new(problem.path, problem.reason + &read.collect::<String>())
+        })?;
         Ok((plans, files))
     }
 

@@ -141,11 +141,11 @@ fn obstacle(given: &Outline, period: Option<&Period>) -> Result<Vec<Polygon>, Pr
     if let Some(period) = period {
         return periodic::bodies(&rings(given.rings())?, period);
     }
-    if let Outline::Ring(ring) = given {
-        if let Some(bodies) = FloorPlan::wall(&points(ring)?)? {
-            let solid = bodies.into_iter().map(Polygon::filling);
-            return Ok(solid.collect::<Result<_, _>>()?);
-        }
+    if let Outline::Ring(ring) = given
+        && let Some(bodies) = FloorPlan::wall(&points(ring)?)?
+    {
+        let solid = bodies.into_iter().map(Polygon::filling);
+        return Ok(solid.collect::<Result<_, _>>()?);
     }
     let polygon = match given {
         Outline::Ring(ring) => Polygon::new(points(ring)?.into_iter().map(Into::into).collect()),

@@ -118,6 +118,8 @@ pub fn plain(text: &str) -> String {
         match letter {
             '{' | '}' => {}
             '\\' => match letters.next() {
+                // A name is the first line.
+                Some('P' | 'N' | 'X') if !found.trim().is_empty() => break,
                 Some('P' | 'n' | '~' | 'N' | 'X') => found.push(' '),
                 Some(other @ ('\\' | '{' | '}')) => found.push(other),
                 // Switches without a value.
@@ -168,7 +170,8 @@ mod tests {
     #[test]
     fn formatting_of_texts_is_left_out() {
         let formatted = "{\\fArial|b0;Hall}\\P%%uNord \\H2.5x;A\\\\B";
-        assert_eq!(plain(formatted), "Hall Nord A\\B");
+        assert_eq!(plain(formatted), "Hall");
+        assert_eq!(plain("Hall A\\\\B"), "Hall A\\B");
         assert_eq!(plain("20%%d, 50%"), "20°, 50%");
     }
 }

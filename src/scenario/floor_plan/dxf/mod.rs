@@ -102,11 +102,12 @@ pub fn drawn(bytes: &[u8], reading: &Reading) -> Result<Drawn, FloorPlanError> {
     let has_walls = items.iter().any(|item| item.kind == Kind::Wall);
     if has_walls && !has_floor {
         let rooms = rooms::rooms(&items, &mut labels, reading)
-            .map_err(|error| with(error, &sorted.left_out()))?;
+            .map_err(|error| with(error, &(moved(&frame) + &sorted.left_out())))?;
         shapes.extend(rooms.shapes);
         notes.extend(rooms.notes);
         gaps.extend(rooms.gaps);
         items.retain(|item| item.kind != Kind::Wall);
+        names::first_of_doors(&mut items);
     } else if !reading.inside.is_empty() {
         notes.push("`plan.inside` has no effect: the floor is drawn as areas".to_owned());
     }
@@ -127,6 +128,13 @@ pub fn drawn(bytes: &[u8], reading: &Reading) -> Result<Drawn, FloorPlanError> {
         notes,
         ..Drawn::default()
     })
+}
+
+/// What an error says of the move of a drawing to the origin.
+fn moved(frame: &Frame) -> String {
+    frame
+        .note()
+        .map_or(String::new(), |note| format!("; the drawing is {note}"))
 }
 
 /// An error with more at its end.

@@ -151,3 +151,12 @@ pub fn by_numbers(items: &mut [Item]) {
         item.name = Some(name);
     }
 }
+
+/// Leaves the first part of each block that is a door: its leaf, without the arc in which it swings.
+pub fn first_of_doors(items: &mut Vec<Item>) {
+    let mut seen = HashSet::new();
+    items.retain(|item| {
+        let block = item.block.filter(|_| item.kind == Kind::Door);
+        block.is_none_or(|block| seen.insert(block))
+    });
+}

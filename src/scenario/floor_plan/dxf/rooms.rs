@@ -1,11 +1,11 @@
 //! Walls that are lines → the floor between them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::entities::is_name;
 use super::faces::{Faces, OUTSIDE};
 use super::gaps::{self, Gap, distance};
-use super::items::Item;
+use super::items::{Form, Item};
 use super::joined::beside;
 use super::map::Point;
 use super::names::Label;
@@ -105,9 +105,12 @@ fn root(group: &mut [usize], face: usize) -> usize {
 fn lines(items: &[Item]) -> (Vec<&Item>, Vec<Line>) {
     let mut found = (Vec::new(), Vec::new());
     for item in items {
+        let is_line = matches!(item.form, Form::Line(_));
         let is_open = match item.kind {
             Kind::Wall => false,
-            Kind::Door | Kind::Exit | Kind::Entrance => true,
+            Kind::Door => true,
+            // A line ends the floor, also where a door opens outward behind it.
+            Kind::Exit | Kind::Entrance => !is_line,
             _ => continue,
         };
         for points in item.lines() {
@@ -163,7 +166,8 @@ pub fn rooms(
     chosen.sort_unstable();
     chosen.dedup();
     notes.extend(closed_doors(&enclosed, &owners, &lines));
-    let mut shapes = floors(&enclosed, &chosen, labels)?;
+    notes.extend(outer_doors(&enclosed, &chosen, &owners, &lines));
+    let mut shapes = floors(&enclosed, &chosen, labels, &mut notes)?;
     let walls = owners
         .iter()
         .zip(lines)
@@ -177,6 +181,44 @@ pub fn rooms(
         notes,
         gaps,
     })
+}
+
+/// A note on doors to the outside, if there are any: people leave by exits alone.
+fn outer_doors(
+    enclosed: &Enclosed,
+    chosen: &[usize],
+    owners: &[&Item],
+    lines: &[Line],
+) -> Option<String> {
+    let is_in = |face: usize| chosen.binary_search(&enclosed.group[face]).is_ok();
+    let outward = |line: &Line| -> Option<Point> {
+        let mut parts = line.points.windows(2);
+        let found = parts.find(|pair| {
+            let [left, right] = beside(pair[0], pair[1]).map(|p| enclosed.faces.at(p));
+            left != right && [left, right].contains(&OUTSIDE) && is_in(left.max(right))
+        });
+        found.map(|pair| pair[0])
+    };
+    let doors = owners
+        .iter()
+        .zip(lines)
+        .filter(|(item, _)| item.kind == Kind::Door);
+    let mut outer = doors.filter_map(|(item, line)| Some((item.name.clone(), outward(line)?)));
+    let (first, at) = outer.next()?;
+    let others: BTreeSet<Option<String>> = outer
+        .map(|(name, _)| name)
+        .filter(|name| *name != first)
+        .collect();
+    let more = match others.len() {
+        0 => String::new(),
+        count => format!(" and {count} more"),
+    };
+    Some(format!(
+        "{}{more}, at {}, ends the floor at the outside: people leave by exits alone; draw a line on a layer for exits \
+         there, or add an exit to the scenario",
+        first.unwrap_or_default(),
+        shown_point(at)
+    ))
 }
 
 /// A note on doors along walls that lead on below them, if there are any: such walls stay closed.
@@ -285,6 +327,7 @@ fn floors(
     enclosed: &Enclosed,
     chosen: &[usize],
     labels: &mut [Label],
+    notes: &mut Vec<String>,
 ) -> Result<Vec<Shape>, FloorPlanError> {
     let mut shapes = Vec::new();
     let is_in = |face: usize| chosen.binary_search(&enclosed.group[face]).is_ok();
@@ -299,20 +342,30 @@ fn floors(
     let rooms = (0..enclosed.faces.count())
         .filter(|&face| is_in(face))
         .count();
-    let mut named = BTreeMap::new();
+    let mut named: BTreeMap<usize, Vec<String>> = BTreeMap::new();
     for label in labels
         .iter_mut()
         .filter(|label| !label.is_used && is_name(&label.says))
     {
         let face = enclosed.faces.at(label.at);
         if face != OUTSIDE && is_in(face) {
-            let name = named.entry(face).or_insert_with(|| label.says.clone());
-            label.is_used = *name == label.says;
+            let names = named.entry(face).or_default();
+            if !names.contains(&label.says) {
+                names.push(label.says.clone());
+            }
+            label.is_used = true;
         }
     }
-    for (face, name) in named {
+    for (face, names) in named {
+        let [name] = &names[..] else {
+            notes.push(several_names(
+                &names,
+                &enclosed.faces.union(|other| other == face)?,
+            ));
+            continue;
+        };
         if let ([floor], 1) = (&mut shapes[..], rooms) {
-            floor.name = Some(name);
+            floor.name = Some(name.clone());
             break;
         }
         let areas = enclosed.faces.union(|other| other == face)?;
@@ -322,6 +375,25 @@ fn floors(
         }));
     }
     Ok(shapes)
+}
+
+/// A note on an area in which several texts are.
+fn several_names(names: &[String], areas: &[Area]) -> String {
+    let quoted: Vec<String> = names
+        .iter()
+        .take(3)
+        .map(|name| format!("\"{}\"", shown(name)))
+        .collect();
+    let more = match names.len().saturating_sub(3) {
+        0 => String::new(),
+        count => format!(" and {count} more"),
+    };
+    let size: f64 = areas.iter().map(Area::area).sum();
+    format!(
+        "the texts {}{more} are in one area of {} m², which gets no name: no wall or door lies between them",
+        quoted.join(", "),
+        rounded(size)
+    )
 }
 
 /// The rings of an area: the outline, then the holes.
