@@ -102,7 +102,7 @@ fn between(one: [Vector; 2], other: [Vector; 2]) -> Option<[Vector; 2]> {
     faces.then(|| [(one[0] + c) * 0.5, (one[1] + d) * 0.5])
 }
 
-/// The named shapes. Those that are no part of the floor plan and have no name are numbered: `exit 1`. Areas are checked.
+/// The named shapes. Those that are no part of the floor plan and have no name are numbered: `exit 1`.
 ///
 /// # Errors
 /// An area that crosses itself.

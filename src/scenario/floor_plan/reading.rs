@@ -33,7 +33,8 @@ pub struct Reading {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1))]
     pub gap: Option<f64>,
-    /// The storey that is read, of several: its name, or its height in meters as a text. Default: all, if they do not overlap.
+    /// The storey that is read, of several: its name, or its height in meters as a text. Default: all, if they do not
+    /// overlap.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub storey: Option<String>,
 }
