@@ -399,3 +399,91 @@ fn other_files_are_refused_with_what_they_are() {
                     drawing again";
     assert_eq!(wrong.end().refused(), expected);
 }
+
+/// A room of 10 m by 5 m with an opening of 1 m in its right wall, and what stands there.
+fn room_with_an_opening(there: impl Fn(Drawing) -> Drawing) -> FloorPlan {
+    let walls = [
+        [10.0, 2.0],
+        [10.0, 0.0],
+        [0.0, 0.0],
+        [0.0, 5.0],
+        [10.0, 5.0],
+        [10.0, 3.0],
+    ];
+    let drawing = Drawing::new(6)
+        .section("ENTITIES")
+        .polyline("walls", false, &walls);
+    there(drawing).end().read()
+}
+
+/// The leaf of a door and the arc in which it swings, to the right or to the left.
+fn leaf(drawing: Drawing, side: f64) -> Drawing {
+    let arc = (0..=8).map(|k| f64::from(k) * PI / 16.0);
+    let arc: Vec<[f64; 2]> = arc
+        .map(|turn| [10.0 + side * turn.cos(), 2.0 + turn.sin()])
+        .collect();
+    let leaf = drawing.line("doors", [10.0, 2.0], [10.0 + side, 2.0]);
+    leaf.polyline("doors", false, &arc)
+}
+
+#[test]
+fn an_exit_ends_the_floor_however_its_door_opens() {
+    let exit = |drawing: Drawing| drawing.line("exits", [10.0, 2.0], [10.0, 3.0]);
+    let plain = room_with_an_opening(exit);
+    let outward = room_with_an_opening(|drawing| exit(leaf(drawing, 1.0)));
+    let inward = room_with_an_opening(|drawing| exit(leaf(drawing, -1.0)));
+    for plan in [plain, outward, inward] {
+        is_near(area(&plan), 50.0, 1e-6);
+        assert!(!is_floor(&plan, 10.3, 2.3));
+        assert_eq!(plan.notes.len(), 1, "{:?}", plan.notes);
+    }
+    // Without an exit, the door ends the floor, and a note says that nobody leaves there.
+    let forgotten = room_with_an_opening(|drawing| leaf(drawing, 1.0));
+    let said =
+        "door 1 and 1 more, at (10, 2), ends the floor at the outside: people leave by exits alone";
+    assert!(
+        forgotten.notes.iter().any(|note| note.contains(said)),
+        "{:?}",
+        forgotten.notes
+    );
+}
+
+#[test]
+fn rooms_without_a_wall_between_them_get_no_name() {
+    let named = |door: bool| {
+        room_with_an_opening(|drawing| {
+            let drawing = drawing.line("exits", [10.0, 2.0], [10.0, 3.0]);
+            let drawing =
+                drawing
+                    .line("walls", [4.0, 0.0], [4.0, 2.0])
+                    .line("walls", [4.0, 3.0], [4.0, 5.0]);
+            let drawing = if door {
+                drawing.line("doors", [4.0, 2.0], [4.0, 3.0])
+            } else {
+                drawing
+            };
+            drawing
+                .text("names", [1.0, 1.0], "Foyer")
+                .text("names", [6.0, 1.0], "Hall")
+        })
+    };
+    let names = |plan: &FloorPlan| -> Vec<String> {
+        let rooms = plan
+            .places
+            .iter()
+            .filter(|place| !place.name.contains("exit 1"));
+        rooms
+            .filter(|place| !place.name.starts_with("door"))
+            .map(|place| place.name.clone())
+            .collect()
+    };
+    assert_eq!(names(&named(true)), ["Foyer", "Hall"]);
+    let open = named(false);
+    assert_eq!(names(&open), Vec::<String>::new());
+    let said = "the texts \"Foyer\", \"Hall\" are in one area of 50 m², which gets no name";
+    assert!(
+        open.notes.iter().any(|note| note.contains(said)),
+        "{:?}",
+        open.notes
+    );
+}
