@@ -215,7 +215,7 @@ fn outer_doors(
     };
     Some(format!(
         "{}{more}, at {}, ends the floor at the outside: people leave by exits alone; draw a line on a layer for exits \
-         there, or add an exit to the scenario",
+         there, from jamb to jamb",
         first.unwrap_or_default(),
         shown_point(at)
     ))
