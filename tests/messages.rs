@@ -213,7 +213,7 @@ fn text_from_plans_and_trajectories_is_shortened_and_escaped() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let long = hostile().replace(['\r', '\n'], "");
-    let feature = json!({"type": "Feature", "properties": {"name": long},
+    let feature = json!({"type": "Feature", "properties": {"name": long, "kind": "floor"},
                          "geometry": {"type": "Point", "coordinates": [0, 0]}});
     let plan = json!({"type": "FeatureCollection", "features": [feature]});
     fs::write(folder.join("plan.geojson"), plan.to_string()).unwrap();

@@ -20,7 +20,7 @@ fn folder(scenario: &Value) -> (tempfile::TempDir, PathBuf) {
     fs::create_dir(folder.path().join("plans")).unwrap();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     write("plans/room.wkt", ROOM);
-    write("plans/line.wkt", "LINESTRING (0 0, 1 1)");
+    write("plans/point.wkt", "POINT (0 0)");
     write("plans/kiosk.wkt", "POLYGON ((6 6, 7 6, 7 7, 6 7))");
     let kiosk = json!({"type": "Feature", "properties": {"kind": "obstacle"}, "geometry":
         {"type": "Polygon", "coordinates": [[[6, 6], [7, 6], [7, 7], [6, 7], [6, 6]]]}});
@@ -75,8 +75,8 @@ fn plans_are_found_next_to_the_scenario_and_inlined_in_its_document() {
 fn mistakes_in_a_plan_are_reported_with_the_scenario_the_key_and_the_file() {
     for (changes, said) in [
         (
-            json!({"walkable_area": "plans/line.wkt"}),
-            vec!["room.json: walkable_area: ", "plans/line.wkt: a LINESTRING"],
+            json!({"walkable_area": "plans/point.wkt"}),
+            vec!["room.json: walkable_area: ", "plans/point.wkt: a POINT"],
         ),
         (
             json!({"obstacles": "no.wkt"}),
