@@ -106,7 +106,7 @@ def test_numbers_of_numpy_are_numbers(corridor):
         ({"viscosity": -5}, "viscosity=-5"),
         ({"viscosity": "5"}, "viscosity"),
         ({"until": 5, "duration_secs": 6}, "set the same key"),
-        ({"geometry": "no/such.wkt"}, "geometry no/such.wkt"),
+        ({"geometry": "no/such.wkt"}, "geometry=no/such.wkt: cannot be read"),
         ({"fps": 7}, "fps: 7 frames per second do not divide"),
     ],
 )
