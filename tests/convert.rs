@@ -115,7 +115,7 @@ fn a_scenario_as_geojson_has_the_same_floor_and_places() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = json!({
         "walkable_area": [[[[0, 0], [20, 0], [20, 10], [0, 10]], [[3, 3], [3, 4], [4, 4], [4, 3]]]],
-        "obstacles": [[[10, 2], [10, 8]], [[6, 6], [7, 6], [7, 7]]],
+        "obstacles": [[[10, 2], [10, 8]], [[6, 6], [7, 6], [7, 7]], [[12, 2], [14, 2], [12, 2]]],
         "exits": [{"name": "east", "line": [[20, 4], [20, 6]]}],
         "zones": [{"name": "slow", "area": [[15, 0], [17, 0], [17, 10], [15, 10]], "speed_factor": 0.5}],
         "crowds": [{"name": "all", "area": [[1, 1], [2, 1], [2, 9], [1, 9]], "number": 5}],
@@ -132,7 +132,7 @@ fn a_scenario_as_geojson_has_the_same_floor_and_places() {
         .collect();
     assert_eq!(
         kinds,
-        ["floor", "wall", "obstacle", "exit", "zone", "crowd"]
+        ["floor", "wall", "obstacle", "wall", "exit", "zone", "crowd"]
     );
     assert_eq!(
         features[1]["geometry"],

@@ -9,7 +9,6 @@ use super::arguments::SceneOptions;
 use super::failure::Failure;
 use super::inputs;
 use super::terminal::{talk, tell};
-
 use runs::case::Source;
 use runs::outputs::{Manner, Outputs, write_file};
 use scenario::floor_plan::is_plan;
@@ -51,13 +50,14 @@ pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
     if ending == "json" && is_plan(&options.input) {
         draft = begun(&options.input, &draft, &options.scene, &mut outputs)?;
     }
+    let scenario = draft.clone().scenario()?;
     let text = match ending.as_str() {
-        "geojson" => format!("{:#}\n", draft.to_geojson()?),
-        _ => draft.clone().scenario()?.to_text(),
+        "geojson" => format!("{:#}\n", draft.to_geojson()),
+        _ => scenario.to_text(),
     };
     let written = write_file(out, text.as_bytes());
     written.map_err(|error| Failure::Output(format!("{}: {error}", out.display())))?;
-    for note in draft.scenario()?.notes {
+    for note in scenario.notes {
         talk(&format!("note: {note}"));
     }
     let file = out.display().to_string();

@@ -2,9 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::error::ScenarioError;
-use crate::floor_plan::{Form, Kind, Place};
-use crate::keys::shapes::{Outline, Point, Ring};
+use crate::floor_plan::{Form, Kind, Place, encloses_nothing};
+use crate::keys::shapes::{Point, Ring};
 use crate::read::draft::Draft;
 
 /// The density of crowds in areas of a plan that say no number of people, P/m².
@@ -39,11 +38,7 @@ impl Draft {
     }
 
     /// Its floor and places as GeoJSON in meters; each feature has its `kind` and its `name`.
-    ///
-    /// # Errors
-    /// The scenario is invalid.
-    pub fn to_geojson(&self) -> Result<Value, ScenarioError> {
-        self.clone().scenario()?;
+    pub fn to_geojson(&self) -> Value {
         let keys = &self.keys;
         let mut all = Features::default();
         for polygon in keys.walkable_area.iter().flatten() {
@@ -51,7 +46,10 @@ impl Draft {
         }
         for obstacle in &keys.obstacles {
             let rings = obstacle.rings();
-            let is_line = rings.iter().all(|ring| ring.0.len() < 3);
+            let points = rings
+                .iter()
+                .flat_map(|ring| ring.0.iter().map(|&Point(point)| point));
+            let is_line = encloses_nothing(&points.collect::<Vec<_>>());
             let of_line = || line(rings.iter().flat_map(|ring| ring.0.iter().copied()));
             match is_line {
                 true => all.add(Kind::Wall, None, of_line()),
@@ -99,11 +97,7 @@ impl Draft {
             );
         }
         for crowd in &keys.crowds {
-            let rings = match &crowd.area {
-                Outline::Ring(ring) => std::slice::from_ref(ring),
-                Outline::Rings(rings) => rings,
-            };
-            all.add(Kind::Crowd, crowd.name.as_deref(), area(rings));
+            all.add(Kind::Crowd, crowd.name.as_deref(), area(crowd.area.rings()));
         }
         for place in self.places.iter().filter(|place| !place.kind.is_built()) {
             if !all.have(&place.name) {
@@ -113,7 +107,7 @@ impl Draft {
         for label in &keys.labels {
             all.add(Kind::Place, Some(&label.text), point(label.at));
         }
-        Ok(json!({"type": "FeatureCollection", "features": all.features}))
+        json!({"type": "FeatureCollection", "features": all.features})
     }
 }
 

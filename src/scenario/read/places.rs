@@ -29,9 +29,7 @@ const WITHIN: [&str; 6] = [
     "labels",
 ];
 /// The keys that have a geometry.
-const KEYS: [&str; 8] = [
-    "line", "area", "path", "at", "facing", "position", "goal", "spot",
-];
+const KEYS: [&str; 7] = ["line", "area", "path", "at", "facing", "position", "goal"];
 
 /// Replaces the names of `places` in `document` by their geometry. Lines across areas end at the walls of `floor`.
 pub fn enter(document: &mut Value, places: &[Place], floor: &[Area]) -> Result<(), Problem> {
@@ -89,7 +87,7 @@ impl Plan<'_> {
         }
         let place = self.place(&name)?;
         let key = match (keys, place.form) {
-            ([first, second], Form::Point) => [second, first][0],
+            ([_, point], Form::Point) => point,
             _ => &keys[0],
         };
         element[*key] = self.geometry(place, key)?;

@@ -71,7 +71,7 @@ impl Plans {
                     false => format!("{key}: {name}: {note}"),
                 });
             }
-            plans.label(document, &plan);
+            label(document, &plan);
             plans.places.append(&mut plan.places);
             plans.add(document, key, &plan);
             floor.append(&mut plan.walkable);
@@ -83,20 +83,6 @@ impl Plans {
             Problem::new(problem.path, problem.reason + &read.collect::<String>())
         })?;
         Ok((plans, files))
-    }
-
-    /// Adds the names of a plan to the labels of a document.
-    fn label(&self, document: &mut Value, plan: &FloorPlan) {
-        if plan.names.is_empty() {
-            return;
-        }
-        if document.get(LABELS).is_none() {
-            document[LABELS] = json!([]);
-        }
-        // Anything else is rejected later.
-        if let Value::Array(labels) = &mut document[LABELS] {
-            labels.extend(labels_of(plan));
-        }
     }
 
     /// Takes the geometry of the plan that `document` names under a key.
@@ -138,6 +124,20 @@ fn reading(document: &Value) -> Result<Reading, Problem> {
     match document.get(READING) {
         None | Some(Value::Null) => Ok(Reading::default()),
         Some(given) => parsed(given).map_err(|problem| problem.under(READING)),
+    }
+}
+
+/// Adds the names of a plan to the labels of a document.
+fn label(document: &mut Value, plan: &FloorPlan) {
+    if plan.names.is_empty() {
+        return;
+    }
+    if document.get(LABELS).is_none() {
+        document[LABELS] = json!([]);
+    }
+    // Anything else is rejected later.
+    if let Value::Array(labels) = &mut document[LABELS] {
+        labels.extend(labels_of(plan));
     }
 }
 
