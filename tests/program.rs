@@ -82,4 +82,5 @@ mod trajectory_laps;
 mod trajectory_robustness;
 mod validate;
 mod validate_runner;
+mod vectors;
 mod verify;

@@ -5,6 +5,7 @@
 //! and 23, and ρ_i is the density of [`local`](super::local). The force on a person is the largest principal pressure,
 //! −σ, times the width of a person. Social forces, RVO and goal forces do not press.
 
+use libm::hypot;
 use serde::{Deserialize, Serialize};
 
 use super::exposure::{Spell, Weight};
@@ -63,7 +64,7 @@ pub fn pressed(simulation: &Simulation, body_mass: f64) -> Vec<Pressed> {
 
 /// The largest eigenvalue of −σ, N/m.
 fn principal_pressure([xx, xy, yy]: [f64; 3]) -> f64 {
-    -0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)
+    -0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy)
 }
 
 /// The observations of one person.

@@ -15,6 +15,7 @@
 //! assert!((search.mean()[0] - 0.5).abs() < 1e-6);
 //! ```
 
+use libm::{cos, exp, log};
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -62,7 +63,7 @@ struct Constants {
 impl Constants {
     fn new(dimension: usize, population: usize) -> Self {
         let (n, lambda) = (dimension as f64, population as f64);
-        let weight = |rank: usize| (0.5 * (lambda + 1.0)).ln() - (rank as f64).ln();
+        let weight = |rank: usize| log(0.5 * (lambda + 1.0)) - log(rank as f64);
         let weights: Vec<f64> = (1..=population / 2).map(weight).collect();
         let sum: f64 = weights.iter().sum();
         let weights: Vec<f64> = weights.iter().map(|weight| weight / sum).collect();
@@ -134,7 +135,7 @@ impl CmaEs {
 
     /// A usual number of points per generation: 4 + ⌊3 ln n⌋.
     pub fn usual_population(dimension: usize) -> usize {
-        4 + (3.0 * (dimension.max(1) as f64).ln()) as usize
+        4 + (3.0 * log(dimension.max(1) as f64)) as usize
     }
 
     /// The center of the distribution.
@@ -207,7 +208,7 @@ impl CmaEs {
         for (way, weight) in &parents {
             self.covariance += way * way.transpose() * (of.rank_mu * weight);
         }
-        self.step *= (of.step_rate / of.damping * (length / of.expected_length - 1.0)).exp();
+        self.step *= exp(of.step_rate / of.damping * (length / of.expected_length - 1.0));
         self.root = Root::of(&self.covariance);
     }
 }
@@ -222,5 +223,5 @@ pub fn reflected(coordinate: f64) -> f64 {
 /// A standard normal number (Box and Muller 1958).
 fn normal(rng: &mut ChaCha8Rng) -> f64 {
     let [length, angle]: [f64; 2] = [rng.random(), rng.random()];
-    (-2.0 * (1.0 - length).ln()).sqrt() * (TAU * angle).cos()
+    (-2.0 * log(1.0 - length)).sqrt() * cos(TAU * angle)
 }

@@ -5,6 +5,7 @@
 //! equal parts of both (J. Gonella, A rotary-component method for analysing meteorological and oceanographic vector
 //! time series, Deep-Sea Research 19, 1972).
 
+use libm::{cos, sincos};
 use std::f64::consts::{E, TAU};
 
 use serde::{Deserialize, Serialize};
@@ -46,7 +47,7 @@ impl Spectrum {
         }
         let sum = |k: usize| series.iter().map(|v| v[k]).sum::<f64>();
         let mean = [0, 1].map(|k| sum(k) / count as f64);
-        let window = |n: usize| 0.5 - 0.5 * (TAU * (n as f64 + 0.5) / count as f64).cos();
+        let window = |n: usize| 0.5 - 0.5 * cos(TAU * (n as f64 + 0.5) / count as f64);
         // Zero padding: the spectrum has more points, but no finer resolution.
         let mut windowed = vec![[0.0; 2]; (2 * count).next_power_of_two()];
         for (n, (to, v)) in windowed.iter_mut().zip(series).enumerate() {
@@ -252,7 +253,7 @@ fn fourier(values: &[Complex]) -> Vec<Complex> {
     let (even, odd) = (every_other(0), every_other(1));
     let mut sums = vec![[0.0; 2]; count];
     for (k, ([a, b], [c, d])) in even.into_iter().zip(odd).enumerate() {
-        let (sin, cos) = (-TAU * k as f64 / count as f64).sin_cos();
+        let (sin, cos) = sincos(-TAU * k as f64 / count as f64);
         let [c, d] = [c * cos - d * sin, c * sin + d * cos];
         sums[k] = [a + c, b + d];
         sums[k + count / 2] = [a - c, b - d];

@@ -4,6 +4,7 @@
 //! convex polygon around the person (Steffen and Seyfried, Physica A 389, 2010). All outlines are counterclockwise, in
 //! meters. The only file of this crate that names spade.
 
+use libm::{cos, sin};
 use spade::{DelaunayTriangulation, Point2, Triangulation, mitigate_underflow};
 
 use engine::math::Vector;
@@ -88,7 +89,7 @@ pub fn disk(center: Vector, radius: f64, segments: u32) -> Vec<Vector> {
     let corners = 4 * segments.max(1);
     let corner = |k: u32| {
         let angle = std::f64::consts::TAU * f64::from(k) / f64::from(corners);
-        center + Vector::new(angle.cos(), angle.sin()) * radius
+        center + Vector::new(cos(angle), sin(angle)) * radius
     };
     (0..corners).map(corner).collect()
 }

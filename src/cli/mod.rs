@@ -66,6 +66,7 @@ use clap::Parser;
 
 use ::output::plot::take_lacked;
 use commands::{Arguments, Command};
+use engine::pairs::Vectors;
 use runs::case::Source;
 use scenario::quote::shown;
 use terminal::talk;
@@ -88,7 +89,10 @@ pub fn main_of<A: Parser>(
 ) -> u8 {
     let typed: Vec<OsString> = arguments.into_iter().collect();
     let failure = match A::try_parse_from(&typed) {
-        Ok(arguments) => run(arguments).err(),
+        Ok(arguments) => Vectors::check()
+            .map_err(Failure::Input)
+            .and_then(|()| run(arguments))
+            .err(),
         Err(error) => {
             let error = tips::added(error, &A::command(), &typed);
             error.print().ok();

@@ -2,6 +2,7 @@
 //!
 //! Plain form of the paper's method: `density_by_wall` and `pressure_by_wall` in `examples/paper.rs`.
 
+use libm::atan2;
 use std::f64::consts::PI;
 
 use crate::geometry::{HiddenRegion, Walls, visible_parts};
@@ -135,7 +136,7 @@ impl Antiderivatives {
         let (q2, s2) = (q * q, s * s);
         let r2 = q2 + s2;
         let r = r2.sqrt();
-        let t = s.atan2(q);
+        let t = atan2(s, q);
         // q² A and q⁴ A vanish with q.
         let q2a = if q2 > 0.0 { q2 * (s / q).asinh() } else { 0.0 };
         // cos t and sin t. At q = s = 0 the direction is arbitrary: its weight is 0.

@@ -19,7 +19,7 @@ use crate::math::Vector;
 use crate::neighbors::{BLOCK, ClusterBlock, Neighbors, TASK};
 use crate::pairs::prelude::*;
 use crate::pairs::{
-    Bodies, Columns, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, load, splat, spread,
+    Bodies, Columns, Lanes, PairSum, Real, Simd, add_pairs, dispatch, level, load, splat, spread,
     store,
 };
 
@@ -124,15 +124,15 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for FromAgents<'a, R, S> {
     #[inline(always)]
     fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], mass: &'a [R], j: usize) {
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
-        let squared = dy.mul_add(dy, dx * dx);
-        let rest = squared.mul_add(self.scale, one).max(zero);
-        self.sum = (spread::<R, S>(simd, mass[j]) * rest).mul_add(rest * rest, self.sum);
+        let squared = dy.mul_add_precise(dy, dx * dx);
+        let rest = squared.mul_add_precise(self.scale, one).max(zero);
+        self.sum = (spread::<R, S>(simd, mass[j]) * rest).mul_add_precise(rest * rest, self.sum);
     }
 }
 
 /// Eq. 9 without walls: Σ_j m_j W(r_ij), including j = i, in P/m², for each agent of a block.
 pub fn from_agents<R: Real>(bodies: &Bodies<R>, block: &ClusterBlock, out: &mut [f64]) {
-    dispatch!(Level::new(), simd => sums(simd, bodies, block, out));
+    dispatch!(level(), simd => sums(simd, bodies, block, out));
 }
 
 #[inline(always)]
@@ -270,7 +270,7 @@ impl<'a, P: Fn(u16) -> &'a SphParameters + Sync> Input<'a, P> {
                     pressure,
                 };
                 match shared {
-                    Some(sph) => dispatch!(Level::new(), _simd => {
+                    Some(sph) => dispatch!(level(), _simd => {
                         complete(|_| sph, &given, found, (volume, packed));
                     }),
                     None => {

@@ -3,9 +3,13 @@
 //! A draw is the quantile of one uniform random number. Truncated distributions are therefore exact and never reject a
 //! draw, and each agent uses one number of its own stream.
 
+mod quantiles;
+
+use libm::{exp, expm1, log, log1p, pow};
 use rand::Rng;
 use rand::distr::Open01;
-use statrs::distribution::{ContinuousCDF, Gamma, Normal};
+
+use quantiles::{Gamma, Normal};
 
 use crate::random::{self, Purpose};
 
@@ -137,8 +141,8 @@ pub enum DistributionError {
 impl Family {
     /// The log-normal distribution of a variable with this mean and standard deviation.
     pub fn log_normal_with(mean: f64, std: f64) -> Self {
-        let variance = (std / mean).powi(2).ln_1p();
-        Self::LogNormal([mean.ln() - 0.5 * variance, variance.sqrt()])
+        let variance = log1p((std / mean).powi(2));
+        Self::LogNormal([log(mean) - 0.5 * variance, variance.sqrt()])
     }
 
     fn shape(&self) -> Result<Shape, DistributionError> {
@@ -147,7 +151,7 @@ impl Family {
             Self::Uniform(ends) => Shape::Uniform(ascending(ends)?),
             Self::Normal([mean, 0.0]) => Self::Constant(mean).shape()?,
             Self::Normal([mean, std]) => Shape::Normal(normal("mean", mean, std)?),
-            Self::LogNormal([mean, 0.0]) => Self::Constant(mean.exp()).shape()?,
+            Self::LogNormal([mean, 0.0]) => Self::Constant(exp(mean)).shape()?,
             Self::LogNormal([mean, std]) => Shape::LogNormal(normal("log_mean", mean, std)?),
             Self::Weibull([scale, shape]) => {
                 Shape::Weibull([positive("scale", scale)?, positive("shape", shape)?])
@@ -159,11 +163,7 @@ impl Family {
                 }
                 // Of scale 1: the distribution function knows no product of bound and rate that rounds to 0 or
                 // infinity.
-                let gamma = Gamma::new(shape, 1.0);
-                Shape::Gamma(
-                    gamma.map_err(|_| DistributionError::NotPositive("shape", shape))?,
-                    scale,
-                )
+                Shape::Gamma(Gamma { shape }, scale)
             }
             Self::Exponential(mean) => Shape::Exponential(positive("the mean", mean)?),
             Self::Values(ref values) => Shape::Values(cumulative(values)?),
@@ -284,11 +284,11 @@ impl Shape {
     /// The distribution function, of shapes without [`ends`](Self::ends).
     fn cdf(&self, x: f64) -> f64 {
         match self {
-            Self::Normal(normal) => normal.cdf(x),
-            Self::LogNormal(normal) => normal.cdf(x.max(0.0).ln()),
-            Self::Weibull([scale, shape]) => -(-(x.max(0.0) / scale).powf(*shape)).exp_m1(),
-            Self::Gamma(gamma, scale) => gamma.cdf(x / scale),
-            Self::Exponential(mean) => -(-x.max(0.0) / mean).exp_m1(),
+            Self::Normal(normal) => normal.share_up_to(x),
+            Self::LogNormal(normal) => normal.share_up_to(log(x.max(0.0))),
+            Self::Weibull([scale, shape]) => -expm1(-pow(x.max(0.0) / scale, *shape)),
+            Self::Gamma(gamma, scale) => gamma.share_up_to(x.max(0.0) / scale),
+            Self::Exponential(mean) => -expm1(-x.max(0.0) / mean),
             Self::Uniform(_) | Self::Values(_) | Self::WeidmannAge(_) => f64::NAN,
         }
     }
@@ -296,11 +296,11 @@ impl Shape {
     fn quantile(&self, share: f64) -> f64 {
         match self {
             Self::Uniform([low, high]) => low + share * (high - low),
-            Self::Normal(normal) => normal.inverse_cdf(share),
-            Self::LogNormal(normal) => normal.inverse_cdf(share).exp(),
-            Self::Weibull([scale, shape]) => scale * (-(-share).ln_1p()).powf(1.0 / shape),
-            Self::Gamma(gamma, scale) => scale * gamma.inverse_cdf(share),
-            Self::Exponential(mean) => -mean * (-share).ln_1p(),
+            Self::Normal(normal) => normal.quantile(share),
+            Self::LogNormal(normal) => exp(normal.quantile(share)),
+            Self::Weibull([scale, shape]) => scale * pow(-log1p(-share), 1.0 / shape),
+            Self::Gamma(gamma, scale) => scale * gamma.quantile(share),
+            Self::Exponential(mean) => -mean * log1p(-share),
             Self::Values(values) => {
                 let place = values.partition_point(|&[_, up_to]| up_to <= share);
                 values[place.min(values.len() - 1)][0]
@@ -345,10 +345,8 @@ fn cumulative(values: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, DistributionError> {
 
 fn normal(name: &'static str, mean: f64, std: f64) -> Result<Normal, DistributionError> {
     let mean = finite(name, mean)?;
-    Normal::new(mean, std)
-        .ok()
-        .filter(|_| std > 0.0 && std.is_finite())
-        .ok_or(DistributionError::NotPositive("std", std))
+    let std = positive("std", std)?;
+    Ok(Normal { mean, std })
 }
 
 fn finite(name: &'static str, value: f64) -> Result<f64, DistributionError> {

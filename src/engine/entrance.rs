@@ -1,6 +1,7 @@
 //! Entrances: lines through which agents come in, at random or regular times and where there is room. Scheduled agents:
 //! agents that each have a time and a place of their own.
 
+use libm::log;
 use rand::Rng;
 use rand::distr::Open01;
 use serde::{Deserialize, Serialize};
@@ -117,7 +118,7 @@ impl Arrivals {
                 let mut random = random::stream(seed, Purpose::Arrival, entrance, u64::from(k));
                 let share: f64 = random.sample(Open01);
                 let (start, waited) = flow.start(before);
-                let time = start + (-share.ln() - waited).max(0.0) / flow.per_sec;
+                let time = start + (-log(share) - waited).max(0.0) / flow.per_sec;
                 flow.includes(k, time).then_some(time)
             }
             Self::At(times) => times.get(k as usize).copied(),

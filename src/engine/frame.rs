@@ -124,7 +124,7 @@ impl Frame<'_> {
     pub fn around(&self, i: usize, radius: f64) -> impl Iterator<Item = (usize, Vector)> + '_ {
         let positions = &self.agents.position;
         let p = positions[i];
-        let runs = self.neighbors.around(p, radius);
+        let runs = self.neighbors.around(i, positions, radius);
         let all = runs.flat_map(move |run| {
             let from = self.neighbors.seen_from(p, run.laps);
             run.indices().map(move |j| (j, from - positions[j]))

@@ -371,10 +371,8 @@ impl Scene {
             Integrator::Midpoint => 0.5 * longest_step, // forces are also evaluated half a step ahead
             _ => 0.0,
         };
-        let reads_lists_alone = !(needs.social || needs.walking || needs.avoidance.is_some());
         let follow = self.neighbor_lists == ListPolicy::Complete
             && agents.len() >= MANY
-            && reads_lists_alone
             && self.period.is_none();
         let (drift, margin) = match self.neighbor_lists {
             ListPolicy::Complete if follow => (FOLLOWED + ahead, 0.5 * SKIN + ahead),

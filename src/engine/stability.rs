@@ -37,6 +37,7 @@ use crate::forces::goal::GoalForce;
 use crate::forces::rates::{Extremes, Rates};
 use crate::scene::{Integrator, Scene};
 use crate::traits::Traits;
+use libm::{log10, pow};
 
 /// C₁ to C₃, and the safety margins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -172,7 +173,7 @@ pub fn time_step(scene: &Scene) -> Option<f64> {
 
 /// `value`, rounded down to three significant digits.
 pub fn three_digits(value: f64) -> f64 {
-    let digit = 10_f64.powf(value.log10().floor() - 2.0);
+    let digit = pow(10_f64, log10(value).floor() - 2.0);
     // Formatting to three digits and parsing removes the rounding error of the division.
     let rounded = (value / digit + 1e-9).floor() * digit;
     format!("{rounded:.2e}").parse().unwrap_or(rounded)

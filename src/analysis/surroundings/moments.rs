@@ -6,7 +6,7 @@ use engine::math::Vector;
 use engine::neighbors::{BLOCK, ClusterBlock};
 use engine::pairs::prelude::*;
 use engine::pairs::{
-    Bodies, Lanes, Level, PairSum, Simd, add_pairs, dispatch, load, splat, spread, store,
+    Bodies, Lanes, PairSum, Simd, add_pairs, dispatch, level, load, splat, spread, store,
 };
 
 /// Σ W, Σ W v and Σ W |v|² over people with a known velocity; the scale of W does not matter.
@@ -35,7 +35,7 @@ impl Moments {
 
 /// The moments of each agent of a block over all agents within reach. Masses are 1, or 0 for unknown velocities.
 pub fn of_block(bodies: &Bodies<f64>, block: &ClusterBlock, out: &mut [Moments]) {
-    dispatch!(Level::new(), simd => sums(simd, bodies, block, out));
+    dispatch!(level(), simd => sums(simd, bodies, block, out));
 }
 
 #[inline(always)]
@@ -88,13 +88,13 @@ impl<'a, S: Simd> PairSum<f64, S> for Sum<'a, S> {
     #[inline(always)]
     fn add(&mut self, simd: S, [dx, dy]: [Lanes<f64, S>; 2], Run(mass, x, y): Run, j: usize) {
         let (zero, one) = (splat::<f64, S>(simd, 0.0), splat::<f64, S>(simd, 1.0));
-        let squared = dy.mul_add(dy, dx * dx);
-        let rest = squared.mul_add(self.scale, one).max(zero);
+        let squared = dy.mul_add_precise(dy, dx * dx);
+        let rest = squared.mul_add_precise(self.scale, one).max(zero);
         let weight = spread::<f64, S>(simd, mass[j]) * rest * rest * rest;
         let (x, y) = (x[j], y[j]);
         self.sums[0] = weight + self.sums[0];
-        self.sums[1] = weight.mul_add(spread::<f64, S>(simd, x), self.sums[1]);
-        self.sums[2] = weight.mul_add(spread::<f64, S>(simd, y), self.sums[2]);
-        self.sums[3] = weight.mul_add(spread::<f64, S>(simd, x * x + y * y), self.sums[3]);
+        self.sums[1] = weight.mul_add_precise(spread::<f64, S>(simd, x), self.sums[1]);
+        self.sums[2] = weight.mul_add_precise(spread::<f64, S>(simd, y), self.sums[2]);
+        self.sums[3] = weight.mul_add_precise(spread::<f64, S>(simd, x * x + y * y), self.sums[3]);
     }
 }

@@ -1,5 +1,6 @@
 //! The crest of a wave in a space-time diagram: its time and its height at each place.
 
+use libm::{hypot, pow};
 use serde::{Deserialize, Serialize};
 
 use super::space_time::SpaceTime;
@@ -127,7 +128,7 @@ fn ratio(a: Estimate, b: Estimate) -> Estimate {
     let value = a.value / b.value;
     Estimate {
         value,
-        error: value * (a.error / a.value).hypot(b.error / b.value),
+        error: value * hypot(a.error / a.value, b.error / b.value),
     }
 }
 
@@ -216,7 +217,7 @@ impl Field {
         let mut best: Option<(f64, Line)> = None;
         for k in 0..TRIED {
             let part = k as f64 / (TRIED - 1) as f64;
-            let slowness = sign / (slowest * (fastest / slowest).powf(part));
+            let slowness = sign / (slowest * pow(fastest / slowest, part));
             let (from, lasting) = begins(slowness);
             for step in 0..=(lasting / self.time_step) as usize {
                 let line = Line {

@@ -100,9 +100,9 @@ impl<R: Real, S: Simd> FromAgents<R, S> {
         radius_j: Lanes<R, S>,
     ) -> Lanes<R, S> {
         let touching = self.radius + radius_j;
-        let overlap = self.minus_unit.mul_add(distance, touching);
+        let overlap = self.minus_unit.mul_add_precise(distance, touching);
         let overlap = overlap.max(splat::<R, S>(simd, 0.0));
-        self.stiffness.mul_add(overlap, others)
+        self.stiffness.mul_add_precise(overlap, others)
     }
 }
 

@@ -12,7 +12,7 @@ use crate::frame::Frame;
 use crate::limits::STRONGEST;
 use crate::math::{Vector, direction};
 use crate::neighbors::BLOCK;
-use crate::pairs::{Level, dispatch};
+use crate::pairs::{dispatch, level};
 
 /// Parameters of Eq. 17.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -65,7 +65,7 @@ impl GoalForce {
         let mass = &frame.agents.mass[agents.clone()];
         let mut all = [Vector::zeros(); BLOCK];
         let all = &mut all[..mass.len()];
-        dispatch!(Level::new(), _simd => accelerate(rate, (preferred, velocity, mass), all));
+        dispatch!(level(), _simd => accelerate(rate, (preferred, velocity, mass), all));
         for (i, &acceleration) in agents.zip(&*all) {
             take(i, acceleration);
         }

@@ -23,6 +23,7 @@
 
 mod repulsion;
 
+use libm::exp;
 use std::any::Any;
 use std::ops::Range;
 use std::sync::Arc;
@@ -174,11 +175,11 @@ impl Legs {
     /// A f(|d|, B) in the direction d, m/s², for people of mass 1.
     fn push(&self, half: Half) -> impl Fn(Vector) -> Vector {
         let range = self.range_of(half);
-        let at_reach = (-self.legs_reach / range).exp();
+        let at_reach = exp(-self.legs_reach / range);
         let strength = self.legs_strength;
         move |d| {
             let distance = d.norm();
-            let force = strength * ((-distance / range).exp() - at_reach).max(0.0);
+            let force = strength * (exp(-distance / range) - at_reach).max(0.0);
             d * (force / distance.max(f64::MIN_POSITIVE))
         }
     }

@@ -9,7 +9,7 @@ use crate::math::Vector;
 use crate::neighbors::{BLOCK, ClusterBlock};
 use crate::pairs::prelude::*;
 use crate::pairs::{
-    Columns, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, each, load, splat, spread,
+    Columns, Lanes, PairSum, Real, Simd, add_pairs, dispatch, each, level, load, splat, spread,
     store,
 };
 
@@ -80,7 +80,7 @@ pub fn accelerations(
 ) {
     let block = frame.neighbors.near().block(b);
     let sph = wanted.pressure || wanted.viscosity;
-    each!(frame.packed, columns => dispatch!(Level::new(), simd => {
+    each!(frame.packed, columns => dispatch!(level(), simd => {
         let input = (columns, block, coefficients);
         match (sph, wanted.viscosity, wanted.contact) {
             (false, _, false) => out.fill(Vector::zeros()),
@@ -183,11 +183,14 @@ impl<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool> PairSum<
     fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], run: Run<R>, j: usize) {
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
         let tiny = splat::<R, S>(simd, R::TINY);
-        let distance = dy.mul_add(dy, dx * dx).max(tiny).sqrt();
+        let distance = dy.mul_add_precise(dy, dx * dx).max(tiny).sqrt();
         let inverse = one / distance;
         let mut force = zero;
         if PRESSURE {
-            let rest = self.minus_unit_per_h.mul_add(distance, one).max(zero);
+            let rest = self
+                .minus_unit_per_h
+                .mul_add_precise(distance, one)
+                .max(zero);
             let weight = spread::<R, S>(simd, run.volume[j]) * rest;
             let p_j = spread(simd, run.pressure[j]);
             force = self.pressure.along(weight, rest, p_j);
@@ -200,7 +203,7 @@ impl<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool> PairSum<
         let radius_j = spread(simd, run.radius[j]);
         force = self.contact.added_to(simd, force, distance, radius_j);
         let force = force * inverse;
-        self.along[0] = force.mul_add(dx, self.along[0]);
-        self.along[1] = force.mul_add(dy, self.along[1]);
+        self.along[0] = force.mul_add_precise(dx, self.along[0]);
+        self.along[1] = force.mul_add_precise(dy, self.along[1]);
     }
 }

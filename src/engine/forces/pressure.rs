@@ -10,7 +10,7 @@ use crate::forces::rates::Rates;
 use crate::frame::Frame;
 use crate::math::Vector;
 use crate::pairs::prelude::*;
-use crate::pairs::{Columns, Lanes, Level, Real, Simd, dispatch, lanes_from, load, splat};
+use crate::pairs::{Columns, Lanes, Real, Simd, dispatch, lanes_from, level, load, splat};
 
 /// Eq. 11 for eight agents i: −Σ_j m_j (p_i + p_j)/(2ρ_j) ∇W, times a coefficient.
 pub struct FromAgents<R: Real, S: Simd> {
@@ -35,7 +35,7 @@ impl<R: Real, S: Simd> FromAgents<R, S> {
     /// The force along r_ij of an agent j with pressure `p_j`. `rest` is 1 − r/h, and `weight` is m_j/ρ_j times it.
     #[inline(always)]
     pub fn along(&self, weight: Lanes<R, S>, rest: Lanes<R, S>, p_j: Lanes<R, S>) -> Lanes<R, S> {
-        let both = self.push.mul_add(p_j, self.push_p_i);
+        let both = self.push.mul_add_precise(p_j, self.push_p_i);
         weight * rest * both
     }
 }
@@ -50,7 +50,7 @@ pub fn add_coefficients(
 ) {
     let density = &frame.fields.density[agents.clone()];
     let rest_density = &frame.fields.rest_density[agents];
-    dispatch!(Level::new(), _simd => add(weight, (density, rest_density), coefficients));
+    dispatch!(level(), _simd => add(weight, (density, rest_density), coefficients));
 }
 
 #[inline(always)]

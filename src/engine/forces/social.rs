@@ -9,6 +9,7 @@ mod cutoff;
 mod near;
 mod sum;
 
+use libm::exp;
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
@@ -24,7 +25,7 @@ use crate::frame::Frame;
 use crate::limits::{FARTHEST, STRONGEST};
 use crate::math::{Vector, direction};
 use crate::neighbors::{BLOCK, Run};
-use crate::pairs::{Bodies, Level, Real, Simd, dispatch, each};
+use crate::pairs::{Bodies, Real, Simd, dispatch, each, level};
 
 /// Parameters of Eqs. 18 and 19 and of the field of view.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -141,7 +142,7 @@ impl SocialForce {
             let neighbors = frame.neighbors;
             neighbors.around_cluster(agents.clone(), positions, radius, runs);
             let (buffers, out) = (&mut buffers, &mut accelerations[own]);
-            dispatch!(Level::new(), simd => {
+            dispatch!(level(), simd => {
                 self.add_sums(simd, bodies, (agents, buffers), (coefficients, out));
             });
         }
@@ -198,8 +199,7 @@ impl SocialForce {
 
     /// Eq. 19 for `away` = r_i − r_k*.
     pub fn wall_force(&self, away: Vector) -> Vector {
-        let strength =
-            self.wall_strength / self.wall_range * (-away.norm() / self.wall_range).exp();
+        let strength = self.wall_strength / self.wall_range * exp(-away.norm() / self.wall_range);
         direction(away) * strength
     }
 }

@@ -7,7 +7,7 @@ use crate::forces::{contact, pressure};
 use crate::neighbors::{BLOCK, ClusterBlock};
 use crate::pairs::prelude::*;
 use crate::pairs::{
-    Columns, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, load, splat, spread, store,
+    Columns, Lanes, PairSum, Real, Simd, add_pairs, dispatch, level, load, splat, spread, store,
 };
 
 /// Σ_j r_ij ⊗ a_ij as xx, xy and yy, m²/s², where a_ij is the acceleration of i by the pressure (Eq. 11) and contact
@@ -18,7 +18,7 @@ pub fn virials(
     felt: &PairCoefficients,
     out: &mut [[f64; 3]],
 ) {
-    dispatch!(Level::new(), simd => sums(simd, columns, block, felt, out));
+    dispatch!(level(), simd => sums(simd, columns, block, felt, out));
 }
 
 #[inline(always)]
@@ -84,16 +84,16 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for Virial<'a, R, S> {
     ) {
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
         let tiny = splat::<R, S>(simd, R::TINY);
-        let distance = dy.mul_add(dy, dx * dx).max(tiny).sqrt();
-        let rest = self.minus_per_h.mul_add(distance, one).max(zero);
+        let distance = dy.mul_add_precise(dy, dx * dx).max(tiny).sqrt();
+        let rest = self.minus_per_h.mul_add_precise(distance, one).max(zero);
         let weight = spread::<R, S>(simd, volume[j]) * rest;
         let p_j = spread(simd, pressure[j]);
         let along = self.pressure.along(weight, rest, p_j);
         let d_j = spread(simd, radius[j]);
         let force = self.contact.added_to(simd, along, distance, d_j) / distance;
         let (x, y) = (force * dx, force * dy);
-        self.sums[0] = x.mul_add(dx, self.sums[0]);
-        self.sums[1] = x.mul_add(dy, self.sums[1]);
-        self.sums[2] = y.mul_add(dy, self.sums[2]);
+        self.sums[0] = x.mul_add_precise(dx, self.sums[0]);
+        self.sums[1] = x.mul_add_precise(dy, self.sums[1]);
+        self.sums[2] = y.mul_add_precise(dy, self.sums[2]);
     }
 }

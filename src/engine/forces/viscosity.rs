@@ -75,8 +75,8 @@ impl<R: Real, S: Simd> FromAgents<R, S> {
     /// Adds an agent j with velocity `v_j`; `weight` is m_j/ρ_j (1 − r/h).
     #[inline(always)]
     pub fn add(&mut self, weight: Lanes<R, S>, v_j: [Lanes<R, S>; 2]) {
-        self.change[0] = weight.mul_add(v_j[0] - self.velocity[0], self.change[0]);
-        self.change[1] = weight.mul_add(v_j[1] - self.velocity[1], self.change[1]);
+        self.change[0] = weight.mul_add_precise(v_j[0] - self.velocity[0], self.change[0]);
+        self.change[1] = weight.mul_add_precise(v_j[1] - self.velocity[1], self.change[1]);
     }
 
     /// `others` plus the sum.
@@ -84,8 +84,8 @@ impl<R: Real, S: Simd> FromAgents<R, S> {
     pub fn added_to(self, [x, y]: [Lanes<R, S>; 2]) -> [Lanes<R, S>; 2] {
         let [change_x, change_y] = self.change;
         [
-            self.drag.mul_add(change_x, x),
-            self.drag.mul_add(change_y, y),
+            self.drag.mul_add_precise(change_x, x),
+            self.drag.mul_add_precise(change_y, y),
         ]
     }
 }

@@ -6,6 +6,7 @@
 //! it meets twice. So every ring is simple, outlines run counterclockwise and holes clockwise, and rings touch
 //! only at points.
 
+use libm::atan2;
 use parry2d::bounding_volume::BoundingVolume;
 
 use super::corners::Corners;
@@ -212,7 +213,7 @@ impl<'a> Leaving<'a> {
         let turn = |k: usize| {
             let out = self.corners.at(self.pieces[k].to) - middle;
             // Clockwise from `back`, in (0, 2π].
-            let angle = (-back.perp(&out)).atan2(back.dot(&out));
+            let angle = atan2(-back.perp(&out), back.dot(&out));
             if angle > 0.0 {
                 angle
             } else {

@@ -6,6 +6,7 @@
 
 use super::Walls;
 use crate::math::{Vector, direction};
+use libm::hypot;
 
 /// Shorter pieces and distances come from rounding, meters.
 const TINY: f64 = 1e-6;
@@ -239,7 +240,7 @@ impl Beside {
     fn within(&self, distance: f64) -> Option<[f64; 2]> {
         let [[x_a, y_a], [x_b, y_b]] = self.ends;
         let [x, y] = [x_b - x_a, y_b - y_a];
-        let length = x.hypot(y);
+        let length = hypot(x, y);
         // The points whose nearest point lies between the ends of the wall, from its first end.
         let beside = [
             (y, x * y_a, distance * length),

@@ -4,6 +4,7 @@
 
 use super::Wall;
 use crate::math::{Vector, perpendicular};
+use libm::{atan2, cos, sin, tan};
 
 /// Rounding error of an angle after a full turn and back, radians. A part that ends within this of the whole
 /// region's end takes that end, which is known exactly (tan is steep close to a wall).
@@ -59,7 +60,7 @@ impl HiddenRegion {
             from,
             to,
             support_radius,
-            angles: [from, to].map(|s| s.atan2(distance)),
+            angles: [from, to].map(|s| atan2(s, distance)),
         };
         (region.angle() > 0.0).then_some(region)
     }
@@ -85,12 +86,12 @@ impl HiddenRegion {
         let [own_t1, own_t2] = self.angles();
         let mut part = *self;
         if t1 > own_t1 + ANGLE_ROUNDING {
-            part.from = (self.distance * t1.tan()).max(self.from);
+            part.from = (self.distance * tan(t1)).max(self.from);
         }
         if t2 < own_t2 - ANGLE_ROUNDING {
-            part.to = (self.distance * t2.tan()).min(self.to);
+            part.to = (self.distance * tan(t2)).min(self.to);
         }
-        part.angles = [part.from, part.to].map(|s| s.atan2(self.distance));
+        part.angles = [part.from, part.to].map(|s| atan2(s, self.distance));
         part
     }
 
@@ -106,7 +107,7 @@ impl HiddenRegion {
         let wall = [self.from, self.to].map(|s| self.towards * self.distance + self.along * s);
         let arc = (0..=arc_steps).map(|step| {
             let t = t2 + (t1 - t2) * step as f64 / arc_steps as f64;
-            (self.towards * t.cos() + self.along * t.sin()) * self.support_radius
+            (self.towards * cos(t) + self.along * sin(t)) * self.support_radius
         });
         let mut outline: Vec<Vector> = wall.into_iter().chain(arc).map(|p| r_i + p).collect();
         outline.push(outline[0]);

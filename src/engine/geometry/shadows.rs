@@ -1,5 +1,6 @@
 //! The union of the shadows of several walls, divided among the walls.
 
+use libm::{atan2, cos};
 use std::f64::consts::TAU;
 
 use super::HiddenRegion;
@@ -47,7 +48,7 @@ pub fn visible_parts(regions: &[HiddenRegion]) -> Vec<(usize, HiddenRegion)> {
 
 /// The direction of the region's perpendicular as an angle in the plane, radians.
 fn bearing(region: &HiddenRegion) -> f64 {
-    region.towards.y.atan2(region.towards.x)
+    atan2(region.towards.y, region.towards.x)
 }
 
 /// Both ends of the region, as angles in the plane in [0, 2π).
@@ -66,7 +67,7 @@ fn local(region: &HiddenRegion, angle: f64) -> f64 {
 fn ray_distance(region: &HiddenRegion, angle: f64) -> Option<f64> {
     let t = local(region, angle);
     let [t1, t2] = region.angles();
-    (t1 <= t && t <= t2).then(|| region.distance / t.cos())
+    (t1 <= t && t <= t2).then(|| region.distance / cos(t))
 }
 
 /// The angle at which two walls cross each other, as walls of overlapping obstacles do.
@@ -83,5 +84,5 @@ fn crossing(first: &HiddenRegion, second: &HiddenRegion) -> Option<f64> {
         let s = p.dot(&region.along);
         region.from < s && s < region.to
     };
-    (inside(first) && inside(second)).then(|| p.y.atan2(p.x).rem_euclid(TAU))
+    (inside(first) && inside(second)).then(|| atan2(p.y, p.x).rem_euclid(TAU))
 }

@@ -69,10 +69,11 @@ pub struct Ranges {
     pub longest_step: f64,
     /// The distance that any agent may move between sorts without missing a wall, meters.
     pub drift: f64,
-    /// The distance that any agent may move between sorts without missing a neighbor, meters; at most `drift`.
+    /// The distance that any agent may move between sorts without missing a neighbor, meters; at most `drift`. If lists
+    /// follow the crowd, half of the distance that two that are near each other may move against each other.
     pub margin: f64,
     /// Whether lists are valid until agents that are near each other have moved by the [`SKIN`] against each other, not
-    /// only until one has moved by half of it. For sums that read the lists alone.
+    /// only until one has moved by half of it.
     pub follow: bool,
     /// Agents are also neighbors across the ends of this period, in which all of them are at the sort.
     pub period: Option<Period>,
@@ -83,6 +84,12 @@ impl Ranges {
     pub fn interaction(&self, widest: f64) -> f64 {
         let avoidance = self.avoidance.unwrap_or_default();
         self.support.max(2.0 * widest).max(avoidance)
+    }
+
+    /// The distance within which agents read each other, meters: at least `reach`, that of the lists.
+    fn farthest(&self, reach: f64) -> f64 {
+        let others = [self.avoidance, self.wide];
+        others.into_iter().flatten().fold(reach, f64::max)
     }
 }
 
@@ -184,7 +191,7 @@ impl Neighbors {
     pub fn moved(&mut self, farthest: f64, strips: Vec<Shifts>) {
         (self.travelled, self.strips) = (farthest, strips);
         if self.ranges.follow && farthest > 0.5 * SKIN {
-            let size = self.reach + 2.0 * FOLLOWED;
+            let size = self.ranges.farthest(self.reach) + 2.0 * FOLLOWED;
             let sorted = (&self.grid, &self.sorted_at[..]);
             self.are_torn = self.tiles.differ(sorted, &self.strips, size, SKIN);
         }
@@ -217,17 +224,24 @@ impl Neighbors {
         Clusters::extent(self.reach).max(self.ranges.wide.map_or(0.0, far)) + unlisted
     }
 
-    /// All agents within `radius` meters of `p`: candidates for avoidance. They include agents at `p`, and some out of
-    /// range.
-    pub fn around(&self, p: Vector, radius: f64) -> impl Iterator<Item = Run> + '_ {
-        self.grid.rows([p; 2], radius + self.displaced())
+    /// All agents within `radius` meters of agent `i`, itself among them, and some out of range.
+    pub fn around(
+        &self,
+        i: usize,
+        positions: &[Vector],
+        radius: f64,
+    ) -> impl Iterator<Item = Run> + '_ {
+        let (places, margin) = self.places(positions);
+        self.grid.rows([places[i]; 2], radius + margin)
     }
 
-    /// The distance that an agent may be from its position at the sort without being missed in the grid, meters.
-    fn displaced(&self) -> f64 {
+    /// The places from which the agents look for others in the grid, and how much farther than others are, meters:
+    /// their `positions`, from which others are as far as they have moved since the sort; or, if lists follow the
+    /// crowd, their positions at the sort, since when agents near each other have moved alike.
+    fn places<'a>(&'a self, positions: &'a [Vector]) -> (&'a [Vector], f64) {
         match self.ranges.follow {
-            true => self.ranges.drift,
-            false => self.ranges.margin,
+            true => (&self.sorted_at, 2.0 * self.ranges.margin),
+            false => (positions, self.ranges.margin),
         }
     }
 
@@ -246,26 +260,38 @@ impl Neighbors {
         found: &mut Vec<Run>,
     ) {
         found.clear();
-        let reach = radius + self.displaced();
+        let (places, margin) = self.places(positions);
         if self.grid.height() <= self.reach {
-            let corners = bounds(positions[agents].iter().copied()).unwrap_or_default();
-            found.extend(self.grid.rows(corners, reach));
+            let corners = bounds(places[agents].iter().copied()).unwrap_or_default();
+            found.extend(self.grid.rows(corners, radius + margin));
             return;
         }
         // Cells had to be made larger than the reach of the lists, so clusters have one agent: list only its
         // neighbors.
+        let reach = match self.ranges.follow {
+            true => [radius + margin, 0.0],
+            false => [radius, margin],
+        };
         for i in agents {
-            let reach = [radius, self.displaced()];
-            self.grid.each_near(positions[i], positions, reach, found);
+            self.grid.each_near(places[i], places, reach, found);
         }
     }
 
-    /// Replaces `found` by runs with all agents in a rectangle, given by its lower left and upper right corners, and
-    /// some that are near it.
-    pub fn inside(&self, corners: [Vector; 2], positions: &[Vector], found: &mut Vec<Run>) {
+    /// Replaces `found` by runs with all agents that `agents`, which are one cluster, may see in a rectangle, given by
+    /// its lower left and upper right corners, and some that are near it.
+    pub fn inside(
+        &self,
+        agents: Range<usize>,
+        corners: [Vector; 2],
+        positions: &[Vector],
+        found: &mut Vec<Run>,
+    ) {
         found.clear();
-        let margin = Vector::repeat(self.displaced());
-        let moved = [corners[0] - margin, corners[1] + margin];
+        let (places, margin) = self.places(positions);
+        let margin = Vector::repeat(margin);
+        let shifts = agents.map(|i| positions[i] - places[i]);
+        let [least, most] = bounds(shifts).unwrap_or_default();
+        let moved = [corners[0] - most - margin, corners[1] - least + margin];
         self.grid.inside(moved, found);
         if self.grid.height() <= self.reach {
             return;

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::real::{LANES, Real};
-use super::{Level, dispatch};
+use super::{dispatch, level};
 use crate::agents::Agents;
 use crate::math::{Vector, direction};
 use crate::neighbors::{BLOCK, TASK};
@@ -140,7 +140,7 @@ impl<R: Real> Bodies<R> {
         );
         blocks.into_par_iter().with_min_len(TASK).for_each(
             |(x, y, velocity_x, velocity_y, positions, velocities)| {
-                dispatch!(Level::new(), _simd => {
+                dispatch!(level(), _simd => {
                     R::coordinates(positions, per_meter, [x, y]);
                     for ((x, y), v) in velocity_x.iter_mut().zip(velocity_y).zip(velocities) {
                         (*x, *y) = (R::of(v.x), R::of(v.y));

@@ -15,15 +15,13 @@ mod sums;
 mod vectors;
 
 pub use columns::{Bodies, Columns, Reach};
-pub use fearless_simd::{
-    Level, Simd, dispatch, f32x8, f64x8, mask32x8, mask64x8, prelude, u8x64, u32x8,
-};
+pub use fearless_simd::{Simd, dispatch, f32x8, f64x8, mask32x8, mask64x8, prelude, u8x64, u32x8};
 pub use real::{LANES, Lanes, Mask, Real};
 pub use sums::{
     PairSum, add_pairs, add_quotients, coordinates, first_lanes, lanes_from, load, seen_from,
     splat, spread, store,
 };
-pub use vectors::Vectors;
+pub use vectors::{VARIABLE, Vectors, level};
 
 use crate::agents::Agents;
 use crate::math::Vector;

@@ -123,7 +123,7 @@ impl Real for f64 {
 
     #[inline(always)]
     fn exp2<S: Simd>(simd: S, x: f64x8<S>) -> f64x8<S> {
-        f64x8::from_fn(simd, |lane| x[lane].exp2())
+        f64x8::from_fn(simd, |lane| libm::exp2(x[lane]))
     }
 }
 
@@ -199,9 +199,11 @@ fn exp2<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, x: V) -> V {
     let rounded = x + rounding;
     let r = x - (rounded - rounding);
     let r2 = r * r;
-    let low = c[3].mul_add(r, c[2]).mul_add(r2, c[1].mul_add(r, c[0]));
-    let high = c[6].mul_add(r2, c[5].mul_add(r, c[4]));
-    let power = high.mul_add(r2 * r2, low);
+    let low = c[3]
+        .mul_add_precise(r, c[2])
+        .mul_add_precise(r2, c[1].mul_add_precise(r, c[0]));
+    let high = c[6].mul_add_precise(r2, c[5].mul_add_precise(r, c[4]));
+    let power = high.mul_add_precise(r2 * r2, low);
     V::from_bits(power.to_bits() + (rounded.to_bits() << 23))
 }
 

@@ -4,10 +4,11 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Level, Simd, dispatch, f64x2, f64x8, prelude::*};
+use fearless_simd::{Simd, dispatch, f64x2, f64x8, prelude::*};
 
 use super::columns::Bodies;
 use super::real::{LANES, Lanes, Real};
+use super::vectors::level;
 use crate::math::Vector;
 use crate::neighbors::Run;
 
@@ -112,7 +113,7 @@ pub fn store<R: Real, S: Simd>(lanes: Lanes<R, S>) -> [f64; LANES] {
 
 /// Adds `numerator` divided by each of `denominators` to `sums`.
 pub fn add_quotients(numerator: f64, denominators: &[f64], sums: &mut [f64]) {
-    dispatch!(Level::new(), _simd => quotients(numerator, denominators, sums));
+    dispatch!(level(), _simd => quotients(numerator, denominators, sums));
 }
 
 #[inline(always)]

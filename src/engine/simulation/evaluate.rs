@@ -14,7 +14,7 @@ use crate::forces::walking::{Decided, Deciders, WalkingLaw, some_meet};
 use crate::frame::Frame;
 use crate::math::{Vector, are_finite, clamp_length, direction};
 use crate::neighbors::{BLOCK, ListPolicy, TASK};
-use crate::pairs::{Level, dispatch, each};
+use crate::pairs::{dispatch, each, level};
 
 impl Simulation {
     /// Runs `work` on a thread of the thread pool, unless the crowd is too small for a second thread. Started from
@@ -239,10 +239,7 @@ impl Simulation {
             let blocks = blocks.with_min_len(TASK).enumerate();
             blocks.for_each(|(b, (allowed, heading))| {
                 for law in &fixed.walking_laws {
-                    let due = Deciders {
-                        meets,
-                        ..fixed.due(&frame, b, law, allowed)
-                    };
+                    let due = fixed.due(&frame, b, (law, meets), allowed);
                     let (allowed, heading) = (&mut *allowed, &mut *heading);
                     law.decide(&frame, b, &due, Decided { allowed, heading });
                 }
@@ -318,8 +315,14 @@ impl Fixed {
         }
     }
 
-    /// The agents of block `b` with this walking law that have no allowed speed yet.
-    fn due(&self, frame: &Frame, b: usize, law: &WalkingLaw, allowed: &[Option<f64>]) -> Deciders {
+    /// The agents of block `b` with this walking law that have no allowed speed yet; some of all agents may meet.
+    fn due(
+        &self,
+        frame: &Frame,
+        b: usize,
+        (law, meets): (&WalkingLaw, bool),
+        allowed: &[Option<f64>],
+    ) -> Deciders {
         let (mut is_due, mut gap) = ([false; BLOCK], [1.0; BLOCK]);
         for (k, allowed) in allowed.iter().enumerate() {
             let i = b * BLOCK + k;
@@ -328,14 +331,10 @@ impl Fixed {
             if is_due[k]
                 && let Some(law) = law.headings()
             {
-                gap[k] = self.gap(frame, i, law);
+                gap[k] = self.gap(frame, i, (law, meets));
             }
         }
-        Deciders {
-            is_due,
-            gap,
-            meets: true,
-        }
+        Deciders { is_due, gap, meets }
     }
 
     /// The input of RVO for agent `i`.
@@ -399,7 +398,7 @@ fn straight_at(speed: f64, positions: &[Vector], aims: &[Vector], preferred: &mu
     );
     let blocks = blocks.into_par_iter().with_min_len(TASK);
     blocks.for_each(|(preferred, positions, aims)| {
-        dispatch!(Level::new(), _simd => walk_straight(speed, (positions, aims), preferred));
+        dispatch!(level(), _simd => walk_straight(speed, (positions, aims), preferred));
     });
 }
 

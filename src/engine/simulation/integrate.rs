@@ -8,7 +8,7 @@ use super::{Arrival, Crowd, Fault, Simulation, Stage};
 use crate::geometry::Walls;
 use crate::math::{Vector, clamp_length, greatest, is_finite};
 use crate::neighbors::{BLOCK, STRIP, Shifts, TASK};
-use crate::pairs::{Level, dispatch};
+use crate::pairs::{dispatch, level};
 use crate::scene::{Integrator, Scene};
 
 impl Simulation {
@@ -120,7 +120,7 @@ impl Simulation {
                 let motions = &mut motions[..accelerations.len()];
                 let mut moves = Moves::default();
                 let may_be_free = max_speeds.is_empty() && walled.peek().is_none();
-                let is_free = dispatch!(Level::new(), _simd => {
+                let is_free = dispatch!(level(), _simd => {
                     find_motions(motion, states.1, accelerations, motions);
                     may_be_free && move_freely(scene.max_speed, dt, motions, states)
                 });
@@ -139,7 +139,7 @@ impl Simulation {
                         moves.make(&limits, dt, *motion, position, velocity);
                     }
                 }
-                moves.farthest = dispatch!(Level::new(), _simd => {
+                moves.farthest = dispatch!(level(), _simd => {
                     if neighbors.follow() {
                         shift(positions, sorted_at, strips);
                     }

@@ -1,7 +1,7 @@
 //! What the time gap of the choice of headings depends on.
 
 use super::{Fixed, Simulation};
-use crate::forces::walking::headings::{Fan, Headings, Situation, before_wall};
+use crate::forces::walking::headings::{Fan, Headings, OPPOSED_WITHIN, Situation, before_wall};
 use crate::frame::Frame;
 use crate::math::{Vector, direction, perpendicular};
 
@@ -10,9 +10,6 @@ const BEYOND: f64 = 1.0;
 /// Places that are this many times narrower than the floor where the agent is count in full; those that are not
 /// narrower do not count.
 const MUCH_NARROWER: f64 = 1.5;
-/// Agents that come toward another one count in full at half of this distance and nearer, and not at all beyond it,
-/// meters.
-const OPPOSED_WITHIN: f64 = 3.0;
 /// Agents come toward each other if the cosine between their ways is less than this number below 0, and fully from the
 /// second one on: those who gather before a door from two sides do not.
 const LEAST_OPPOSED: f64 = 0.7;
@@ -25,13 +22,13 @@ impl Simulation {
         let law = self.blend(i).walking_law()?;
         let law = law.headings()?;
         frame.fields.preferred_velocity.get(i)?;
-        law.fan(&frame, i, self.fixed.gap(&frame, i, law))
+        law.fan(&frame, i, self.fixed.gap(&frame, i, (law, true)))
     }
 }
 
 impl Fixed {
-    /// The factor of T of agent `i`.
-    pub(super) fn gap(&self, frame: &Frame, i: usize, law: &Headings) -> f64 {
+    /// The factor of T of agent `i`. Unless some agents may `meet`, none come toward each other.
+    pub(super) fn gap(&self, frame: &Frame, i: usize, (law, meet): (&Headings, bool)) -> f64 {
         let agents = frame.agents;
         let motivation = self.scene.motivation(agents, i, frame.clock.time());
         let density = frame.fields.density.get(i).copied().unwrap_or(0.0);
@@ -39,7 +36,7 @@ impl Fixed {
             0.0 => None,
             _ => self.narrowing(frame, i, law),
         };
-        let opposed = match law.gap.queues(motivation, density) {
+        let opposed = match meet && law.gap.queues(motivation, density) {
             true => opposed(frame, i),
             false => 0.0,
         };

@@ -6,6 +6,7 @@
 
 mod storeys;
 
+use libm::hypot;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::error::FloorPlanError;
@@ -293,5 +294,5 @@ fn next(paths: &mut Vec<Path>, from: [f64; 2]) -> Option<Path> {
 }
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
+    hypot(a[0] - b[0], a[1] - b[1])
 }

@@ -1,5 +1,6 @@
 //! Checks that people can pass the lines of exits, and notes on lines of which much lies off the floor.
 
+use libm::{cos, sin};
 use std::f64::consts::TAU;
 
 use crate::error::Problem;
@@ -245,7 +246,7 @@ impl<'a> Line<'a> {
             });
             let mut around = (0..AT_WALL * DIRECTIONS).map(|k| {
                 let turn = TAU * f64::from(k % DIRECTIONS) / f64::from(DIRECTIONS);
-                let way = along * turn.cos() + perpendicular(along) * turn.sin();
+                let way = along * cos(turn) + perpendicular(along) * sin(turn);
                 end + way * (f64::from(k / DIRECTIONS + 1) * STEP)
             });
             !is_at_door && around.all(|p| self.floor.locate(p).is_some())

@@ -1,5 +1,6 @@
 //! Agents, grids, crowds, sources and entrances of a file → groups, agents, sources and entrances of a scene.
 
+use libm::hypot;
 use std::collections::BTreeMap;
 
 use crate::error::{Problem, Under};
@@ -124,7 +125,7 @@ impl<'a> Population<'a> {
         let [x, y] = agent.velocity.unwrap_or_default();
         let own_most = |speed| self.scene.own_speeds(speed)[1];
         let own = agent.preferred_speed.map(own_most);
-        let (speed, most) = (x.hypot(y), own.unwrap_or(self.scene.max_speed));
+        let (speed, most) = (hypot(x, y), own.unwrap_or(self.scene.max_speed));
         if speed > most * (1.0 + ROUNDING) {
             let reason = format!(
                 "the speed {speed} m/s is above max_speed {most}; lower it, or raise max_speed"

@@ -1,5 +1,6 @@
 //! The steps from a person's row to the next, gaps, and the speeds on the way.
 
+use libm::{log, log10};
 use std::collections::BTreeMap;
 
 use super::order::median;
@@ -118,7 +119,7 @@ impl Tracks {
         let taken = self.unit.unwrap_or(Unit::Meter);
         let in_unit = |unit: Unit| speed * unit.meters() / taken.meters();
         let fits = |unit: &Unit| (PLAUSIBLE[0]..=PLAUSIBLE[1]).contains(&in_unit(*unit));
-        let off = |unit: &Unit| (in_unit(*unit) / WALK).ln().abs();
+        let off = |unit: &Unit| log(in_unit(*unit) / WALK).abs();
         let units = Unit::ALL
             .into_iter()
             .filter(|unit| *unit != taken && fits(unit));
@@ -166,7 +167,7 @@ fn most_common(steps: &BTreeMap<i64, u64>) -> Option<(i64, u64)> {
 
 /// A number of three digits.
 fn brief(number: f64) -> String {
-    let unit = 10_f64.powi(2 - number.log10().floor() as i32);
+    let unit = 10_f64.powi(2 - log10(number).floor() as i32);
     let rounded = (number * unit).round() / unit;
     match rounded < 1e6 {
         true => rounded.to_string(),

@@ -1,5 +1,6 @@
 //! What the times in a file say: the frame rate, and the frames if the file does not number them.
 
+use libm::log10;
 use std::collections::BTreeMap;
 
 use super::FRAME_RATES;
@@ -56,7 +57,7 @@ impl Times {
         if whole > 0.0 && misses(whole) <= AS_WELL * misses(fps) + ROUNDING {
             return Some(Ok(whole));
         }
-        let unit = 10_f64.powi(8 - fps.log10().floor() as i32);
+        let unit = 10_f64.powi(8 - log10(fps).floor() as i32);
         Some(Ok((fps * unit).round() / unit))
     }
 }

@@ -1,5 +1,6 @@
 //! The repulsion of bodies, and of legs, by other people: sums over pairs.
 
+use libm::exp;
 use std::f64::consts::LOG2_E;
 use std::ops::Range;
 
@@ -10,7 +11,7 @@ use crate::math::Vector;
 use crate::neighbors::BLOCK;
 use crate::pairs::prelude::*;
 use crate::pairs::{
-    Bodies, LANES, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, each, lanes_from, splat,
+    Bodies, LANES, Lanes, PairSum, Real, Simd, add_pairs, dispatch, each, lanes_from, level, splat,
     store,
 };
 
@@ -24,7 +25,7 @@ impl Legs {
         half: Half,
     ) -> [Vector; BLOCK] {
         let mut sums = [Vector::zeros(); BLOCK];
-        each!(frame.packed, columns => dispatch!(Level::new(), simd => {
+        each!(frame.packed, columns => dispatch!(level(), simd => {
             self.add_repulsions(simd, frame, &columns.bodies, (agents, half), &mut sums);
         }));
         sums
@@ -63,7 +64,7 @@ impl Legs {
                 unit: splat::<R, S>(simd, bodies.unit),
                 reach_squared: splat::<R, S>(simd, self.legs_reach * self.legs_reach),
                 per_range: splat::<R, S>(simd, -LOG2_E / range),
-                at_reach: splat::<R, S>(simd, (-self.legs_reach / range).exp()),
+                at_reach: splat::<R, S>(simd, exp(-self.legs_reach / range)),
                 along: [splat::<R, S>(simd, 0.0); 2],
             };
             add_pairs(simd, bodies, (cluster.start, runs), &mut sum);
@@ -132,17 +133,17 @@ impl<R: Real, S: Simd> PairSum<R, S> for Repulsion<'_, R, S> {
     fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], first: usize, j: usize) {
         let (zero, tiny) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, R::TINY));
         let (dx, dy) = (dx * self.unit, dy * self.unit);
-        let is_near = dy.mul_add(dy, dx * dx).simd_lt(self.reach_squared);
+        let is_near = dy.mul_add_precise(dy, dx * dx).simd_lt(self.reach_squared);
         if is_near.all_false() {
             return;
         }
         let lean = self.leans.of(first + j);
         let x = dx - self.own[0] + splat::<R, S>(simd, lean.x);
         let y = dy - self.own[1] + splat::<R, S>(simd, lean.y);
-        let distance = y.mul_add(y, x * x).max(tiny).sqrt();
+        let distance = y.mul_add_precise(y, x * x).max(tiny).sqrt();
         let falling = R::exp2(simd, distance * self.per_range) - self.at_reach;
         let force = is_near.select(falling.max(zero), zero) / distance;
-        self.along[0] = force.mul_add(x, self.along[0]);
-        self.along[1] = force.mul_add(y, self.along[1]);
+        self.along[0] = force.mul_add_precise(x, self.along[0]);
+        self.along[1] = force.mul_add_precise(y, self.along[1]);
     }
 }

@@ -8,7 +8,7 @@ use super::{Situation, floor};
 use crate::math::{Vector, unit_vector};
 use crate::pairs::prelude::*;
 use crate::pairs::{
-    LANES, Level, Simd, dispatch, f64x8, first_lanes, mask32x8, mask64x8, u8x64, u32x8,
+    LANES, Simd, dispatch, f64x8, first_lanes, level, mask32x8, mask64x8, u8x64, u32x8,
 };
 
 /// A candidate velocity, relative to the current one.
@@ -83,7 +83,7 @@ impl Draws {
         let count = count as usize;
         self.bytes.resize(count.next_multiple_of(LANES) * BYTES, 0);
         rng.fill_bytes(&mut self.bytes[..count * BYTES]);
-        let kept = dispatch!(Level::new(), simd => self.keep(simd, count, situation));
+        let kept = dispatch!(level(), simd => self.keep(simd, count, situation));
         self.candidates.pad(kept);
         &self.candidates
     }

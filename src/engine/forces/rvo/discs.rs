@@ -1,7 +1,6 @@
 //! Moving discs in single precision, packed in columns.
 
-use crate::math::Vector;
-use crate::neighbors::{Neighbors, Run};
+use crate::neighbors::Run;
 use crate::pairs::prelude::*;
 use crate::pairs::{LANES, Simd, f32x8, f64x8, mask32x8, u32x8};
 
@@ -50,12 +49,10 @@ fn put<S: Simd>(column: &mut [f32], values: f64x8<S>, is_wanted: mask32x8<S>) {
 }
 
 impl Discs {
-    /// Begins to read the agents within `radius` meters of `p`.
-    pub fn around(&mut self, neighbors: &Neighbors, p: Vector, radius: f64) {
+    /// Begins to read the agents of these runs.
+    pub fn begin(&mut self, runs: impl Iterator<Item = Run>) {
         self.runs.clear();
-        neighbors
-            .around(p, radius)
-            .for_each(|run| self.runs.push(run));
+        runs.for_each(|run| self.runs.push(run));
     }
 
     /// The next run of agents to be read.

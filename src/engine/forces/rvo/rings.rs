@@ -194,9 +194,11 @@ impl<S: Simd> Way<S> {
         let y = f32x8::from_slice(simd, &discs.y);
         let gap = f32x8::from_slice(simd, &discs.gap) + self.gap;
         let zero = splat(simd, 0.0);
-        let approach = x.mul_add(wx, y.mul_add(wy, self.approach));
+        let approach = x.mul_add_precise(wx, y.mul_add_precise(wy, self.approach));
         let approach = approach.max(zero);
-        let squared = wx.mul_add(wx, wy.mul_add(wy, self.squared)).max(zero);
+        let squared = wx
+            .mul_add_precise(wx, wy.mul_add_precise(wy, self.squared))
+            .max(zero);
         let time = (approach / squared).min(latest);
         gap - (approach + approach - squared * time) * time
     }

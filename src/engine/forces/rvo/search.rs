@@ -7,7 +7,7 @@ use super::rings::{Appear, Rings};
 use super::surroundings::Surroundings;
 use super::{Situation, time_to_contact};
 use crate::math::Vector;
-use crate::pairs::{Level, Simd, dispatch};
+use crate::pairs::{Simd, dispatch, level};
 
 /// Safety margin far above the rounding errors of deviations and times, so that no bound excludes a candidate
 /// that could be best.
@@ -54,7 +54,7 @@ impl Search {
         candidates: &Candidates,
         collision_weight: f64,
     ) -> Vector {
-        dispatch!(Level::new(), simd => {
+        dispatch!(level(), simd => {
             self.best_by(simd, (situation, surroundings), candidates, collision_weight)
         })
     }

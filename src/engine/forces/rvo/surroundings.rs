@@ -66,7 +66,7 @@ impl Surroundings for Around<'_> {
         } = self.frame;
         let (mut squared, mut widest) = (0.0_f64, 0.0_f64);
         neighbors
-            .around(agents.position[self.i], self.radius)
+            .around(self.i, &agents.position, self.radius)
             .for_each(|run| {
                 let fastest = greatest(&agents.velocity[run.indices()], |v| v.norm_squared());
                 squared = squared.max(fastest);
@@ -100,7 +100,7 @@ impl Surroundings for Around<'_> {
             ),
         };
         let position = agents.position[self.i];
-        discs.around(neighbors, position, farthest.sqrt());
+        discs.begin(neighbors.around(self.i, &agents.position, farthest.sqrt()));
         // Closures do not inherit `#[target_feature]`: these loops are closure-free.
         while let Some(run) = discs.next_run() {
             let place = neighbors.seen_from(position, run.laps);

@@ -74,13 +74,13 @@ impl<'a, R: Real, S: Simd> Around<'a, R, S> {
     ) -> Mask<R, S> {
         let x = outside::<R, S>(simd, x, self.places[0]);
         let y = outside::<R, S>(simd, y, self.places[1]);
-        let r_squared = y.mul_add(y, x * x);
+        let r_squared = y.mul_add_precise(y, x * x);
         let mut counts = r_squared.simd_lt(self.radius_squared);
         if let Some(cutoff) = self.cutoff {
             let [[slowest_x, fastest_x], [slowest_y, fastest_y]] = self.velocities;
             let vx = (fastest_x - vx).max(vx - slowest_x);
             let vy = (fastest_y - vy).max(vy - slowest_y);
-            counts &= cutoff.group_counts(r_squared, vy.mul_add(vy, vx * vx));
+            counts &= cutoff.group_counts(r_squared, vy.mul_add_precise(vy, vx * vx));
         }
         counts
     }

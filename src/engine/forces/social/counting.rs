@@ -87,9 +87,9 @@ impl<R: Real> Counting<R> {
             let (vx, vy) = (load(simd, velocity_x, j), load(simd, velocity_y, j));
             let [sx, sy] = feeling.shift([vx, vy]);
             let (ax, ay) = (dx + sx, dy + sy);
-            let d_squared = dy.mul_add(dy, dx * dx);
-            let a_squared = ay.mul_add(ay, ax * ax);
-            let dot = dy.mul_add(ay, dx * ax);
+            let d_squared = dy.mul_add_precise(dy, dx * dx);
+            let a_squared = ay.mul_add_precise(ay, ax * ax);
+            let dot = dy.mul_add_precise(ay, dx * ax);
             let counts = cutoff.counts(d_squared, a_squared, dot) & feeling.is_in_range(d_squared);
             let here = count..count + LANES;
             dx.compress(counts).store_slice(&mut dx_out[here.clone()]);

@@ -3,6 +3,7 @@
 use super::SocialForce;
 use crate::pairs::prelude::*;
 use crate::pairs::{Lanes, Mask, Real, Simd, splat};
+use libm::log;
 
 /// The largest ratio of |d| and |a|, either way, of a pair that is left out, and the factor (√q + 1/√q)/2 of its force.
 const LARGEST_RATIO: f64 = 4.0;
@@ -36,7 +37,7 @@ impl SocialForce {
     /// B², where V₀/σ e^(−B/σ) times the largest factor is the tolerance, plus some rounding errors of b², m².
     fn least_b_squared(&self, roundings: f64) -> f64 {
         let strength = LARGEST_FACTOR * self.agent_strength / self.agent_range;
-        let b = self.agent_range * (strength / self.avoidance_tolerance).max(1.0).ln();
+        let b = self.agent_range * log((strength / self.avoidance_tolerance).max(1.0));
         b * b + roundings * ROUNDING * self.avoidance_radius * self.avoidance_radius
     }
 }

@@ -78,7 +78,7 @@ impl<R: Real, S: Simd> Feeling<R, S> {
         let radius = social.avoidance_radius / unit;
         let falling = -unit / (SQRT_2 * LN_2 * social.agent_range);
         let ahead = splat::<R, S>(simd, time);
-        let speed = y.mul_add(y, x * x).sqrt();
+        let speed = y.mul_add_precise(y, x * x).sqrt();
         Self {
             velocity: [x, y],
             minus_ahead: splat::<R, S>(simd, -time),
@@ -127,8 +127,8 @@ impl<R: Real, S: Simd> Feeling<R, S> {
     #[inline(always)]
     pub fn shift(&self, [vx, vy]: [Lanes<R, S>; 2]) -> [Lanes<R, S>; 2] {
         [
-            vx.mul_add(self.minus_ahead, self.ahead[0]),
-            vy.mul_add(self.minus_ahead, self.ahead[1]),
+            vx.mul_add_precise(self.minus_ahead, self.ahead[0]),
+            vy.mul_add_precise(self.minus_ahead, self.ahead[1]),
         ]
     }
 
@@ -143,16 +143,16 @@ impl<R: Real, S: Simd> Feeling<R, S> {
         let [[dx, dy], v_j] = pairs.pairs(simd, step);
         let [sx, sy] = self.shift(v_j);
         let (ax, ay) = (dx + sx, dy + sy);
-        let d_squared = dy.mul_add(dy, dx * dx);
+        let d_squared = dy.mul_add_precise(dy, dx * dx);
         Begun {
             r_ij: [dx, dy],
             d_squared,
             d: d_squared.sqrt(),
             r_ij_ahead: [ax, ay],
-            a: ay.mul_add(ay, ax * ax).sqrt(),
-            dot: dy.mul_add(ay, dx * ax),
+            a: ay.mul_add_precise(ay, ax * ax).sqrt(),
+            dot: dy.mul_add_precise(ay, dx * ax),
             cross: dx * sy - dy * sx,
-            towards: dy.mul_add(self.velocity[1], dx * self.velocity[0]),
+            towards: dy.mul_add_precise(self.velocity[1], dx * self.velocity[0]),
         }
     }
 
@@ -189,8 +189,8 @@ impl<R: Real, S: Simd> Feeling<R, S> {
     #[inline(always)]
     fn add_effect(&self, simd: S, effect: Effect<R, S>, sum: &mut [Lanes<R, S>; 2]) {
         let size = R::exp2(simd, effect.b * self.falling) * effect.size;
-        sum[0] = size.mul_add(effect.along[0], sum[0]);
-        sum[1] = size.mul_add(effect.along[1], sum[1]);
+        sum[0] = size.mul_add_precise(effect.along[0], sum[0]);
+        sum[1] = size.mul_add_precise(effect.along[1], sum[1]);
     }
 }
 

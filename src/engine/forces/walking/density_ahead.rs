@@ -11,6 +11,7 @@
 //! wall is empty, and its density is lower by that fraction. Agents that want to walk against agent i count max(0, 1 +
 //! 4 ê_i·ê_j), and not at all if they come straight towards it (see [`headway`](super::headway)).
 
+use libm::exp;
 use std::f64::consts::LN_2;
 use std::ops::Range;
 
@@ -53,7 +54,7 @@ impl DensityAhead {
     /// s^law, m/s: the speed of an agent with preferred speed `free`, m/s, at this density ahead, P/m².
     pub fn speed(&self, free: f64, density: f64) -> f64 {
         let gap = 1.0 / density - 1.0 / self.jam_density;
-        let share = 1.0 - (-self.slowing_density * gap).exp();
+        let share = 1.0 - exp(-self.slowing_density * gap);
         free * share.max(0.0)
     }
 
@@ -67,11 +68,7 @@ impl DensityAhead {
     /// largest at ρ = γ, or at ρ_jam if that is lower.
     pub(super) fn rates(&self, of: &Extremes) -> Rates {
         let ratio = self.slowing_density / self.jam_density;
-        let most = if ratio < 1.0 {
-            (ratio - 1.0).exp()
-        } else {
-            ratio
-        };
+        let most = if ratio < 1.0 { exp(ratio - 1.0) } else { ratio };
         Rates {
             steepness: of.speed * most * 4.0 / of.sph.support_radius,
             ..Rates::default()
@@ -139,18 +136,18 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for Ahead<'a, R, S> {
     ) {
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
         let along = dy
-            .mul_add(self.backwards[1], dx * self.backwards[0])
+            .mul_add_precise(self.backwards[1], dx * self.backwards[0])
             .max(zero);
-        let squared = dy.mul_add(dy, dx * dx);
-        let rest = squared.mul_add(self.scale, one).max(zero);
+        let squared = dy.mul_add_precise(dy, dx * dx);
+        let rest = squared.mul_add_precise(self.scale, one).max(zero);
         let [x, y] = self.backwards;
         let e_x = spread::<R, S>(simd, heading_x[j]);
         let e_y = spread::<R, S>(simd, heading_y[j]);
-        let against = e_y.mul_add(y, e_x * x).max(zero);
+        let against = e_y.mul_add_precise(y, e_x * x).max(zero);
         let counts = against
-            .mul_add(splat::<R, S>(simd, -AGAINST), one)
+            .mul_add_precise(splat::<R, S>(simd, -AGAINST), one)
             .max(zero);
         let weighted = spread::<R, S>(simd, mass[j]) * along * rest * counts;
-        self.sum = weighted.mul_add(rest * rest, self.sum);
+        self.sum = weighted.mul_add_precise(rest * rest, self.sum);
     }
 }

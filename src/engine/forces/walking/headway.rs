@@ -123,7 +123,7 @@ impl Headway {
         let per_time = splat::<R, S>(simd, 1.0 / self.headway_time) / walkers.gap;
         let length = splat::<R, S>(simd, self.headway_length);
         let time = splat::<R, S>(simd, self.headway_time) * walkers.gap;
-        let range = walkers.speed.mul_add(time, length) / unit;
+        let range = walkers.speed.mul_add_precise(time, length) / unit;
         let range_squared = range * range;
         let fade = FADE * self.lane_half_width;
         let velocity_x = load(simd, &bodies.velocity_x, walkers.start);
@@ -131,7 +131,7 @@ impl Headway {
         let [x, y] = walkers.backwards;
         let mut sum = Nearest {
             motions: Motions::of(bodies),
-            backwards_speed: velocity_y.mul_add(y, velocity_x * x),
+            backwards_speed: velocity_y.mul_add_precise(y, velocity_x * x),
             time: splat::<R, S>(simd, self.headway_anticipation / bodies.unit),
             backwards: walkers.backwards,
             range_squared,
@@ -182,23 +182,27 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for Nearest<'a, R, S> {
     #[inline(always)]
     fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], motions: Motions<'a, R>, j: usize) {
         // Ahead, d* is at least the distance, and behind at least R: most agents of a run are farther away.
-        if dy.mul_add(dy, dx * dx).simd_lt(self.farthest).all_false() {
+        if dy
+            .mul_add_precise(dy, dx * dx)
+            .simd_lt(self.farthest)
+            .all_false()
+        {
             return;
         }
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
         let [x, y] = self.backwards;
-        let along = dy.mul_add(y, dx * x);
+        let along = dy.mul_add_precise(y, dx * x);
         let across = (dx * y - dy * x).abs();
-        let aside = across.mul_add(self.per_fade, self.edge).max(zero);
+        let aside = across.mul_add_precise(self.per_fade, self.edge).max(zero);
         let behind = (one - along * self.per_fade).max(zero);
         let [v_x, v_y] = motions.velocity(simd, j);
-        let approach = v_y.mul_add(y, v_x * x) - self.backwards_speed;
+        let approach = v_y.mul_add_precise(y, v_x * x) - self.backwards_speed;
         let expected = along - self.time * approach.min(zero);
-        let squared = across.mul_add(across, expected * expected);
+        let squared = across.mul_add_precise(across, expected * expected);
         let [e_x, e_y] = motions.heading(simd, j);
-        let against = e_y.mul_add(y, e_x * x).max(zero);
-        let outside = against.mul_add(splat::<R, S>(simd, AGAINST), aside + behind);
-        let squared = self.range_squared.mul_add(outside, squared);
+        let against = e_y.mul_add_precise(y, e_x * x).max(zero);
+        let outside = against.mul_add_precise(splat::<R, S>(simd, AGAINST), aside + behind);
+        let squared = self.range_squared.mul_add_precise(outside, squared);
         self.squared = self.squared.min(squared);
         self.farthest = self.squared * splat::<R, S>(simd, ROUNDING);
     }

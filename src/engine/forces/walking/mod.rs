@@ -23,6 +23,7 @@ pub use density_ahead::DensityAhead;
 pub use headings::Headings;
 pub use headway::Headway;
 
+use libm::hypot;
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::ops::Range;
 
@@ -33,7 +34,7 @@ use crate::forces::rates::{Extremes, Rates};
 use crate::frame::Frame;
 use crate::math::{Vector, direction};
 use crate::neighbors::BLOCK;
-use crate::pairs::{Bodies, LANES, Level, Real, Simd, dispatch, each, store};
+use crate::pairs::{Bodies, LANES, Real, Simd, dispatch, each, level, store};
 
 /// The walking law of a profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,7 +76,9 @@ impl WalkingLaw {
         let view = self.view(support);
         let longest = self.headings().map_or(1.0, |law| law.gap.longest());
         let length = view.length + (view.time * longest + view.more_time) * speed;
-        length.hypot(view.aside + view.spread * length)
+        let seen = hypot(length, view.aside + view.spread * length);
+        self.headings()
+            .map_or(seen, |law| seen.max(law.gap.sight()))
     }
 
     /// The farthest distance of walls that an agent with this preferred speed, m/s, avoids, meters; `None` for laws
@@ -124,7 +127,7 @@ impl WalkingLaw {
 
     /// Sets what the due agents of block `b` decide.
     pub fn decide(&self, frame: &Frame, b: usize, due: &Deciders, mut decided: Decided) {
-        each!(frame.packed, columns => dispatch!(Level::new(), simd => {
+        each!(frame.packed, columns => dispatch!(level(), simd => {
             self.decide_with(simd, &columns.bodies, (frame, b), due, &mut decided);
         }));
     }

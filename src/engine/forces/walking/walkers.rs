@@ -73,6 +73,8 @@ impl<'a, R: Real> Motions<'a, R> {
 pub(super) struct Walkers<R: Real, S: Simd> {
     /// The first of them.
     pub start: usize,
+    /// Their number, at most eight.
+    count: usize,
     /// −ê_i, zero without preferred velocity.
     pub backwards: [Lanes<R, S>; 2],
     /// s_i: their preferred speeds, m/s.
@@ -92,11 +94,12 @@ impl<R: Real, S: Simd> Walkers<R, S> {
         let zero = splat::<R, S>(simd, 0.0);
         let x = lanes_from::<R, S>(simd, &wish[0]);
         let y = lanes_from::<R, S>(simd, &wish[1]);
-        let speed = y.mul_add(y, x * x).sqrt();
+        let speed = y.mul_add_precise(y, x * x).sqrt();
         let walks = speed.simd_gt(zero);
         let minus_inverse = walks.select(splat::<R, S>(simd, -1.0) / speed, zero);
         Self {
             start,
+            count: wishes.len(),
             backwards: [x * minus_inverse, y * minus_inverse],
             speed,
             gap: lanes_from::<R, S>(simd, gaps),
@@ -127,7 +130,8 @@ impl<R: Real, S: Simd> Walkers<R, S> {
         let positions = &frame.agents.position;
         let way = self.area(simd, bodies, view);
         let area = way.map(|way| positions[self.start] + way);
-        frame.neighbors.inside(area, positions, runs);
+        let agents = self.start..self.start + self.count;
+        frame.neighbors.inside(agents, area, positions, runs);
     }
 
     /// The lower left and the upper right corner of a rectangle with all places that they look at, meters from the
@@ -156,14 +160,16 @@ impl<R: Real, S: Simd> Walkers<R, S> {
             splat::<R, S>(simd, -view.time),
             splat::<R, S>(simd, -view.length),
         );
-        let time = self.gap.mul_add(time, splat::<R, S>(simd, -view.more_time));
-        let reach = self.speed.mul_add(time, length);
+        let time = self
+            .gap
+            .mul_add_precise(time, splat::<R, S>(simd, -view.more_time));
+        let reach = self.speed.mul_add_precise(time, length);
         let front = backwards * reach;
         let (aside, spread) = (
             splat::<R, S>(simd, view.aside),
             splat::<R, S>(simd, -view.spread),
         );
-        let side = across.abs() * reach.mul_add(spread, aside);
+        let side = across.abs() * reach.mul_add_precise(spread, aside);
         let walks = self.speed.simd_gt(zero);
         let low = walks.select(at + front.min(zero) - side, zero);
         let high = walks.select(at + front.max(zero) + side, zero);

@@ -1,5 +1,6 @@
 //! Corners of walls that shortest routes bend around.
 
+use libm::atan2;
 use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
@@ -106,7 +107,7 @@ impl Corner {
         while let Some((t, k)) = next {
             let corners = mesh.corners(t);
             let [a, b] = [1, 2].map(|n| corners[(k + n) % 3] - corners[k]);
-            total += a.perp(&b).atan2(a.dot(&b));
+            total += atan2(a.perp(&b), a.dot(&b));
             fan.push((t, k));
             angles.push(total);
             let side = (k + 2) % 3;
@@ -191,7 +192,7 @@ impl Corner {
     /// opposite side. `None` if the shortest way does not bend here.
     pub fn turn(&self, mesh: &Mesh, i: usize, p: Vector) -> Option<Turn> {
         let (side, ray) = (self.end(mesh, i).at - self.place, p - self.place);
-        let angle = self.angles[i] + side.perp(&ray).atan2(side.dot(&ray));
+        let angle = self.angles[i] + atan2(side.perp(&ray), side.dot(&ray));
         Turn::BOTH.into_iter().find(|&turn| {
             let [low, high] = self.sector(turn);
             (low - MARGIN..=high + MARGIN).contains(&angle)

@@ -1,5 +1,6 @@
 //! Curves → points between which straight lines deviate by at most a tolerance.
 
+use libm::{acos, atan, atan2, hypot, sincos};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 use super::map::{MOST_POINTS, Point};
@@ -54,17 +55,17 @@ impl Conic {
     }
 
     fn at(&self, angle: f64) -> Point {
-        let (sine, cosine) = angle.sin_cos();
+        let (sine, cosine) = sincos(angle);
         let one = |k: usize| self.center[k] + self.major[k] * cosine + self.minor[k] * sine;
         [one(0), one(1)]
     }
 
     /// The number of straight parts.
     fn parts(&self, tolerance: f64) -> f64 {
-        let length = |v: Point| v[0].hypot(v[1]);
-        let radius = length(self.major).hypot(length(self.minor)).max(tolerance);
+        let length = |v: Point| hypot(v[0], v[1]);
+        let radius = hypot(length(self.major), length(self.minor)).max(tolerance);
         // A chord of this angle deviates by the tolerance.
-        let step = 2.0 * (1.0 - tolerance / radius).acos();
+        let step = 2.0 * acos(1.0 - tolerance / radius);
         let span = (self.to - self.from).abs();
         (span / step.clamp(TAU / MOST_PARTS, FRAC_PI_4))
             .ceil()
@@ -179,14 +180,14 @@ fn bulge(vertex: &Vertex, next: Point) -> Option<Conic> {
         0.5 * (x + next[0]) - aside * chord[1],
         0.5 * (y + next[1]) + aside * chord[0],
     ];
-    let radius = (x - center[0]).hypot(y - center[1]);
-    let from = (y - center[1]).atan2(x - center[0]);
+    let radius = hypot(x - center[0], y - center[1]);
+    let from = atan2(y - center[1], x - center[0]);
     Some(Conic {
         center,
         major: [radius, 0.0],
         minor: [0.0, radius],
         from,
-        to: from + 4.0 * bulge.atan(),
+        to: from + 4.0 * atan(bulge),
     })
 }
 
@@ -210,7 +211,7 @@ mod tests {
             is_closed: true,
         };
         let points = path.points(0.005);
-        let off = |p: &Point| ((p[0] - 2.0).hypot(p[1]) - 2.0).abs();
+        let off = |p: &Point| (hypot(p[0] - 2.0, p[1]) - 2.0).abs();
         assert!(points.iter().all(|p| off(p) < 1e-12));
         let exact = std::f64::consts::PI * 4.0;
         assert!(area(&points) < exact && area(&points) > exact - 0.005 * 4.0 * TAU);

@@ -4,6 +4,7 @@ use super::map::Point;
 use super::network::Line;
 use super::rows::Rows;
 use crate::floor_plan::error::FloorPlanError;
+use libm::hypot;
 
 /// Ends nearer than this to another line meet it, meters.
 const MEETING: f64 = 1e-9;
@@ -31,7 +32,7 @@ impl Gap {
 
 /// The distance between two points.
 pub fn distance(a: Point, b: Point) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
+    hypot(a[0] - b[0], a[1] - b[1])
 }
 
 /// A straight part of a line.

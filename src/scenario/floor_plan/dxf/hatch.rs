@@ -7,6 +7,7 @@ use super::record::Record;
 use super::spline::Spline;
 use super::syntax;
 use crate::floor_plan::error::FloorPlanError;
+use libm::{atan2, sincos};
 
 /// The flag of a boundary that is a polyline.
 const POLYLINE: i64 = 2;
@@ -138,8 +139,8 @@ fn edge(reader: &mut Reader) -> Result<Piece, FloorPlanError> {
             let ratio = reader.number(40)?;
             // The angles are those of directions.
             let parameter = |angle: f64| {
-                let (sine, cosine) = angle.to_radians().sin_cos();
-                (sine / ratio).atan2(cosine)
+                let (sine, cosine) = sincos(angle.to_radians());
+                atan2(sine / ratio, cosine)
             };
             let [from, to] = angles(reader)?.map(parameter);
             let conic = Conic {

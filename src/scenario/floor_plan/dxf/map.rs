@@ -1,5 +1,7 @@
 //! Maps of the plane: the coordinate systems of entities, and the places of blocks.
 
+use libm::{hypot, sincos};
+
 /// A point of a drawing.
 pub type Point = [f64; 2];
 
@@ -44,7 +46,7 @@ impl Map {
 
     /// A turn around the origin, radians.
     pub fn turn(angle: f64) -> Self {
-        let (sine, cosine) = angle.sin_cos();
+        let (sine, cosine) = sincos(angle);
         Self {
             along: [cosine, sine],
             across: [-sine, cosine],
@@ -96,14 +98,14 @@ impl Map {
 
     /// The largest factor by which lengths grow, up to √2.
     pub fn growth(&self) -> f64 {
-        let length = |v: Point| v[0].hypot(v[1]);
-        length(self.along).hypot(length(self.across))
+        let length = |v: Point| hypot(v[0], v[1]);
+        hypot(length(self.along), length(self.across))
     }
 }
 
 /// The direction of a vector; `None` without one.
 pub fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
-    let length = v[0].hypot(v[1]).hypot(v[2]);
+    let length = hypot(hypot(v[0], v[1]), v[2]);
     let is_some = length.is_finite() && length > 0.0;
     is_some.then(|| v.map(|x| x / length))
 }

@@ -2,6 +2,7 @@
 //!
 //! i_overlay divides the lines on a grid. Everything after that is exact.
 
+use libm::{exp2, log2};
 use std::cmp::Ordering;
 
 use i_overlay::core::fill_rule::FillRule;
@@ -50,7 +51,7 @@ impl Grid {
             };
         }
         // A power of two keeps the rounding of coordinates small.
-        let step = (half.max(1e-3) / REACH).log2().ceil().exp2();
+        let step = exp2(log2(half.max(1e-3) / REACH).ceil());
         Self {
             middle: [0, 1].map(|k| 0.5 * (low[k] + high[k])),
             step,

@@ -245,7 +245,8 @@ fn blockers(
         j != i && way.norm() < near && way.dot(&ahead) > CONE * way.norm()
     };
     let reach = 2.0 * far * radius.max(RADIUS_RANGE[1]);
-    let around = frame.neighbors.around(p, reach).flat_map(|run| {
+    let around = frame.neighbors.around(i, &agents.position, reach);
+    let around = around.flat_map(|run| {
         let from = frame.neighbors.seen_from(p, run.laps);
         run.agents.map(move |j| (j as usize, from))
     });

@@ -150,7 +150,7 @@ impl Headings {
         let time = splat::<R, S>(simd, self.headway.headway_time) * walkers.gap;
         let length = splat::<R, S>(simd, self.headway.headway_length);
         let look_ahead = splat::<R, S>(simd, self.look_ahead);
-        let far = walkers.speed.mul_add(time, length) + look_ahead;
+        let far = walkers.speed.mul_add_precise(time, length) + look_ahead;
         let [x, y] = walkers.backwards;
         let velocity_x = load(simd, &bodies.velocity_x, walkers.start);
         let velocity_y = load(simd, &bodies.velocity_y, walkers.start);
@@ -160,7 +160,7 @@ impl Headings {
             backwards: walkers.backwards,
             unit: splat::<R, S>(simd, bodies.unit),
             own: [
-                velocity_y.mul_add(y, velocity_x * x),
+                velocity_y.mul_add_precise(y, velocity_x * x),
                 velocity_x * y - velocity_y * x,
             ],
             turned: turned.map(|of| [splat::<R, S>(simd, of.x), splat::<R, S>(simd, of.y)]),
@@ -244,42 +244,45 @@ impl<'a, R: Real, S: Simd, const MEETS: bool> PairSum<R, S> for Rooms<'a, R, S, 
         let (mut oncoming, mut sight) = (zero, self.widest);
         if MEETS {
             let [e_x, e_y] = motions.heading(simd, j);
-            let against = e_y.mul_add(y, e_x * x).max(zero);
+            let against = e_y.mul_add_precise(y, e_x * x).max(zero);
             oncoming = (against * splat::<R, S>(simd, headway::AGAINST)).min(one);
-            let farther = oncoming.mul_add(self.farther, self.far);
+            let farther = oncoming.mul_add_precise(self.farther, self.far);
             sight = oncoming.simd_gt(zero).select(farther * farther, sight);
         }
-        let squared = dy.mul_add(dy, dx * dx);
+        let squared = dy.mul_add_precise(dy, dx * dx);
         if squared.simd_lt(sight).all_false() {
             return;
         }
         // Where agent j is, and how it moves, along the way and to its left.
-        let ahead = dy.mul_add(y, dx * x);
+        let ahead = dy.mul_add_precise(y, dx * x);
         let left = dy * x - dx * y;
         let [v_x, v_y] = motions.velocity(simd, j);
-        let faster = self.own[0] - v_y.mul_add(y, v_x * x);
+        let faster = self.own[0] - v_y.mul_add_precise(y, v_x * x);
         let leftward = v_x * y - v_y * x - self.own[1];
         let [time, evasion] = self.times;
         let evasion = evasion * oncoming;
         let shift = self.leftward * oncoming;
         let mut widest = zero;
         for (squared, [cosine, sine]) in self.squared.iter_mut().zip(self.turned) {
-            let along = left.mul_add(sine, ahead * cosine);
+            let along = left.mul_add_precise(sine, ahead * cosine);
             let across = left * cosine - ahead * sine;
             let across = if MEETS { across + shift } else { across };
-            let away = leftward.mul_add(sine, faster * cosine);
-            let expected = away.max(zero).mul_add(time, along);
+            let away = leftward.mul_add_precise(sine, faster * cosine);
+            let expected = away.max(zero).mul_add_precise(time, along);
             let expected = match MEETS {
                 true => {
                     let closing = away.min(zero).max(self.fastest);
-                    closing.mul_add(evasion, expected).max(zero)
+                    closing.mul_add_precise(evasion, expected).max(zero)
                 }
                 false => expected,
             };
-            let aside = across.abs().mul_add(self.per_fade, self.edge).max(zero);
+            let aside = across
+                .abs()
+                .mul_add_precise(self.per_fade, self.edge)
+                .max(zero);
             let behind = (one - along * self.per_fade).max(zero);
-            let inside = across.mul_add(across, expected * expected);
-            *squared = squared.min(self.far_squared.mul_add(aside + behind, inside));
+            let inside = across.mul_add_precise(across, expected * expected);
+            *squared = squared.min(self.far_squared.mul_add_precise(aside + behind, inside));
             widest = widest.max(*squared);
         }
         self.widest = widest * splat::<R, S>(simd, ROUNDING);

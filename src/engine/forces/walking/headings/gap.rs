@@ -1,5 +1,6 @@
 //! How the time gap T depends on motivation, density and narrowings.
 
+use libm::exp;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -54,6 +55,10 @@ impl Default for Gap {
     }
 }
 
+/// Agents that come toward another one count in full at half of this distance and nearer, and not at all beyond it,
+/// meters.
+pub const OPPOSED_WITHIN: f64 = 3.0;
+
 /// What the factor of T of an agent depends on.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Situation {
@@ -78,7 +83,7 @@ impl Gap {
         let queue = 1.0 + self.queue_share * calm * queued;
         let narrow = of.narrowing.map_or(1.0, |[distance, counts]| {
             let near = distance / self.narrowing_range;
-            1.0 + self.narrowing_share * counts * (-near * near).exp()
+            1.0 + self.narrowing_share * counts * exp(-near * near)
         });
         hurry * press * queue * narrow
     }
@@ -87,6 +92,14 @@ impl Gap {
     /// whether others come toward it.
     pub fn queues(&self, motivation: f64, density: f64) -> bool {
         self.queue_share != 0.0 && motivation < 1.0 && density > self.queue_density
+    }
+
+    /// The distance of the farthest agents that count, meters.
+    pub fn sight(&self) -> f64 {
+        match self.queue_share {
+            0.0 => 0.0,
+            _ => OPPOSED_WITHIN,
+        }
     }
 
     /// Narrowings farther away than this do not count, meters.

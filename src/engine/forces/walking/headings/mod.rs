@@ -21,9 +21,10 @@ mod gap;
 mod room;
 
 pub use fan::{End, Fan, Heading, rotated};
-pub use gap::{Gap, Situation};
+pub use gap::{Gap, OPPOSED_WITHIN, Situation};
 pub use room::before_wall;
 
+use libm::sin;
 use std::f64::consts::TAU;
 
 use schemars::JsonSchema;
@@ -214,7 +215,7 @@ impl Headings {
         View {
             length: lane.length + self.look_ahead,
             aside: (1.0 + FADE) * self.heading_half_width,
-            spread: self.heading_angle.to_radians().sin(),
+            spread: sin(self.heading_angle.to_radians()),
             ..lane
         }
     }
