@@ -251,7 +251,8 @@ impl Profile {
         }
         if let (Some(law), Some(goal)) = (self.walking, goal) {
             let rate = goal.rate();
-            let lost = law.lost_velocities(frame, agents.clone());
+            let mut lost = [Vector::zeros(); BLOCK];
+            law.lost_velocities(frame, agents.clone(), &mut lost[..agents.len()]);
             for (i, lost) in agents.clone().zip(lost) {
                 take(Term::Walking, i, lost * (rate / frame.agents.mass[i]));
             }

@@ -17,7 +17,10 @@ pub const TASK: usize = 8;
 pub const CLUSTER: usize = 8;
 
 /// The greatest width of a cluster, in units of the lists' reach: in a sparse crowd clusters have fewer agents.
-const WIDEST: f64 = 2.0;
+const WIDEST: f64 = 3.0;
+
+/// Half the period of coordinates that may wrap, in units of the lists' reach.
+const EXTENT: f64 = 4.5;
 
 /// All agents in clusters of at most [`CLUSTER`] agents, in blocks of [`BLOCK`] agents.
 #[derive(Debug, Clone, Default)]
@@ -42,10 +45,10 @@ struct Cluster {
 impl Clusters {
     /// Half the period of coordinates that may wrap, meters, for lists that reach `reach` meters: large enough that
     /// wrapping makes no listed agent seem near. Along x or y, the distance to a listed agent is at most the sum of a
-    /// cluster's width, the reach, two cells of at most `reach` each, and two displacements since the sort. This is 6
+    /// cluster's width, the reach, two cells of at most `reach` each, and two displacements since the sort. This is 7
     /// `reach`; 8 are allowed.
     pub fn extent(reach: f64) -> f64 {
-        (WIDEST + 2.5) * reach
+        EXTENT * reach
     }
 
     /// For each cluster, lists all agents within `reach` meters of any of its members, and some that are farther away,
@@ -118,6 +121,7 @@ impl ClusterBlock {
         agents: Range<usize>,
         reach: f64,
     ) {
+        let half_curvature = 0.5 / reach;
         let mut start = agents.start;
         while start < agents.end {
             let first = grid.place(positions[start]);
@@ -128,7 +132,7 @@ impl ClusterBlock {
                 if place.row != first.row || (place.x - first.x).abs() > WIDEST * reach {
                     break;
                 }
-                extent.include(place.x, place.y, grid.height(), reach);
+                extent.include(place.x, place.y, grid.height(), (reach, half_curvature));
                 end += 1;
             }
             for (row, [from, to]) in (first.row - 1..).zip(extent.rows) {
@@ -183,13 +187,17 @@ impl Default for Extent {
 }
 
 impl Extent {
-    /// Extends the intervals by a circle of radius `reach` meters around a place `x` along the row and `y` above its
-    /// lower edge.
-    fn include(&mut self, x: f64, y: f64, height: f64, reach: f64) {
+    /// Extends the intervals by a circle of radius `reach` meters, half of whose curvature is `half_curvature`, around a
+    /// place `x` along the row and `y` above its lower edge.
+    #[inline(always)]
+    fn include(&mut self, x: f64, y: f64, height: f64, (reach, half_curvature): (f64, f64)) {
         for (row, gap) in self.rows.iter_mut().zip([y, 0.0, height - y]) {
             // √(reach² − gap²) is at most this.
-            let half = reach - gap * gap / (2.0 * reach);
-            *row = [row[0].min(x - half), row[1].max(x + half)];
+            let half = reach - gap * gap * half_curvature;
+            let (from, to) = (x - half, x + half);
+            // Without branches; nothing here is NaN.
+            row[0] = if from < row[0] { from } else { row[0] };
+            row[1] = if to > row[1] { to } else { row[1] };
         }
     }
 }

@@ -92,24 +92,25 @@ impl Grid {
         cell_of.clear();
         let cells = positions.par_iter().with_min_len(SOME);
         cell_of.par_extend(cells.map(|&p| self.cell_of(p) as u32));
+        // Entry c + 2 counts the agents of cell c; from the sums on, entry c + 1 is where the next agent of cell c goes.
         let cells = self.cells();
         self.start.clear();
-        self.start.resize(cells + 1, 0);
+        self.start.resize(cells + 2, 0);
         for &cell in &cell_of {
-            self.start[cell as usize + 1] += 1;
+            self.start[cell as usize + 2] += 1;
         }
-        for cell in 0..cells {
-            self.start[cell + 1] += self.start[cell];
+        let mut before = 0;
+        for count in &mut self.start {
+            before += *count;
+            *count = before;
         }
         order.resize(positions.len(), 0);
         for (i, &cell) in cell_of.iter().enumerate() {
-            let next = &mut self.start[cell as usize];
+            let next = &mut self.start[cell as usize + 1];
             order[*next as usize] = i as u32;
             *next += 1;
         }
-        // Each cell's entry is now the start of the next cell.
-        self.start.copy_within(0..cells, 1);
-        self.start[0] = 0;
+        self.start.truncate(cells + 1);
         self.cell_of = cell_of;
     }
 
@@ -180,7 +181,7 @@ impl Grid {
 
     /// The agents in the cells of a row from `from` to `to`, meters from the left end of the row.
     pub fn run(&self, row: usize, from: f64, to: f64) -> Range<u32> {
-        let column = |x: f64| ((x / self.width) as usize).min(self.columns - 1);
+        let column = |x: f64| ((x * self.per_meter.x) as usize).min(self.columns - 1);
         let first = row * self.columns;
         self.start[first + column(from)]..self.start[first + column(to) + 1]
     }

@@ -15,6 +15,7 @@ use crate::frame::Frame;
 use crate::math::{Vector, are_finite, clamp_length, direction};
 use crate::neighbors::{BLOCK, ListPolicy, TASK};
 use crate::pairs::{dispatch, each, level};
+use crate::scene::Group;
 
 impl Simulation {
     /// Runs `work` on a thread of the thread pool, unless the crowd is too small for a second thread. Started from
@@ -232,16 +233,19 @@ impl Simulation {
             let wishes = &derived.fields.preferred_velocity;
             derived.packed.take_headings(wishes);
             let meets = fixed.needs.headings && some_meet(wishes);
+            let laws: Vec<Followers> = fixed.followers(meets).collect();
             let frame = derived.frame(fixed, crowd);
             let blocks = allowed
                 .par_chunks_mut(BLOCK)
                 .zip(heading.par_chunks_mut(BLOCK));
             let blocks = blocks.with_min_len(TASK).enumerate();
             blocks.for_each(|(b, (allowed, heading))| {
-                for law in &fixed.walking_laws {
-                    let due = fixed.due(&frame, b, (law, meets), allowed);
+                for followers in &laws {
+                    let due = fixed.due(&frame, b, followers, allowed);
                     let (allowed, heading) = (&mut *allowed, &mut *heading);
-                    law.decide(&frame, b, &due, Decided { allowed, heading });
+                    followers
+                        .law
+                        .decide(&frame, b, &due, Decided { allowed, heading });
                 }
                 for allowed in allowed {
                     allowed.get_or_insert(f64::INFINITY); // no law
@@ -315,26 +319,41 @@ impl Fixed {
         }
     }
 
-    /// The agents of block `b` with this walking law that have no allowed speed yet; some of all agents may meet.
+    /// The walking laws of the scene, with the groups that follow them; some agents may `meet` others.
+    fn followers(&self, meet: bool) -> impl Iterator<Item = Followers<'_>> {
+        self.walking_laws.iter().map(move |law| {
+            let groups = self.scene.groups.iter();
+            let follows = |group: &Group| group.blend.walking_law() == Some(law);
+            Followers {
+                law,
+                groups: groups.map(follows).collect(),
+                meet,
+            }
+        })
+    }
+
+    /// The followers of a walking law in block `b` that have no allowed speed yet.
     fn due(
         &self,
         frame: &Frame,
         b: usize,
-        (law, meets): (&WalkingLaw, bool),
+        followers: &Followers,
         allowed: &[Option<f64>],
     ) -> Deciders {
         let (mut is_due, mut gap) = ([false; BLOCK], [1.0; BLOCK]);
+        let headings = followers.law.headings();
         for (k, allowed) in allowed.iter().enumerate() {
             let i = b * BLOCK + k;
-            let own = self.blend(frame.agents, i).walking_law();
-            is_due[k] = allowed.is_none() && own == Some(law);
-            if is_due[k]
-                && let Some(law) = law.headings()
-            {
-                gap[k] = self.gap(frame, i, (law, meets));
+            is_due[k] = allowed.is_none() && followers.groups[usize::from(frame.agents.group[i])];
+            if let Some(law) = headings.filter(|_| is_due[k]) {
+                gap[k] = self.gap(frame, i, (law, followers.meet));
             }
         }
-        Deciders { is_due, gap, meets }
+        Deciders {
+            is_due,
+            gap,
+            meets: followers.meet,
+        }
     }
 
     /// The input of RVO for agent `i`.
@@ -384,6 +403,15 @@ impl Fixed {
             blend.add_accelerations(frame, span, changed, acceleration);
         });
     }
+}
+
+/// The agents that follow a walking law.
+struct Followers<'a> {
+    law: &'a WalkingLaw,
+    /// Whether it is the law of each group.
+    groups: Vec<bool>,
+    /// Whether some of all agents may want to walk against others.
+    meet: bool,
 }
 
 /// Agents slow down this many seconds before they reach the spot where they wait.

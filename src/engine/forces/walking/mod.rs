@@ -202,31 +202,41 @@ impl WalkingLaw {
     /// The change of the preferred velocity of agent `i` that gives it the allowed speed along the heading that it
     /// follows, m/s.
     pub fn lost_velocity(&self, frame: &Frame, i: usize) -> Vector {
-        let mut lost = self.lost_velocities(frame, i..i + 1);
-        lost.next().unwrap_or_default()
+        let mut lost = [Vector::zeros()];
+        self.lost_velocities(frame, i..i + 1, &mut lost);
+        lost[0]
     }
 
-    /// Those of several agents.
-    pub fn lost_velocities(
-        &self,
-        frame: &Frame,
-        agents: Range<usize>,
-    ) -> impl Iterator<Item = Vector> {
-        let law = self.headings().map(|law| (law, law.all_turned()));
-        agents.map(move |i| {
-            let wish = frame.fields.preferred_velocity[i];
-            let speed = wish.norm();
-            let allowed = frame.agents.allowed_speed.get(i).copied().flatten();
-            // Without branches: what agents decide is hard to predict.
-            let allowed = allowed.unwrap_or(f64::INFINITY).min(speed);
-            let share = allowed / speed.max(f64::MIN_POSITIVE);
-            match &law {
-                Some((law, all)) => {
-                    headings::rotated(wish, all[law.followed(frame, i)]) * share - wish
-                }
-                None => wish * (share - 1.0),
+    /// Those of several agents of one block.
+    pub fn lost_velocities(&self, frame: &Frame, agents: Range<usize>, lost: &mut [Vector]) {
+        let wishes = &frame.fields.preferred_velocity[agents.clone()];
+        let allowed = frame.agents.allowed_speed.get(agents.clone());
+        let allowed = allowed.unwrap_or_default();
+        let mut shares = [1.0; BLOCK];
+        dispatch!(level(), _simd => allowed_shares(wishes, allowed, &mut shares));
+        let shares = wishes.iter().zip(shares);
+        let Some(law) = self.headings() else {
+            for (lost, (wish, share)) in lost.iter_mut().zip(shares) {
+                *lost = wish * (share - 1.0);
             }
-        })
+            return;
+        };
+        let all = law.all_turned();
+        for ((lost, (wish, share)), i) in lost.iter_mut().zip(shares).zip(agents) {
+            let heading = headings::rotated(*wish, all[law.followed(frame, i)]);
+            *lost = heading * share - wish;
+        }
+    }
+}
+
+/// The part of their preferred speeds at which agents may walk, of those that have decided on a speed.
+#[inline(always)]
+fn allowed_shares(wishes: &[Vector], allowed: &[Option<f64>], shares: &mut [f64]) {
+    for ((share, wish), allowed) in shares.iter_mut().zip(wishes).zip(allowed) {
+        let speed = wish.norm();
+        // Without branches: what agents decide is hard to predict.
+        let allowed = allowed.unwrap_or(f64::INFINITY).min(speed);
+        *share = allowed / speed.max(f64::MIN_POSITIVE);
     }
 }
 

@@ -20,6 +20,8 @@ pub(super) struct View {
     pub time: f64,
     /// The additional length per preferred speed, seconds.
     pub more_time: f64,
+    /// How far it reaches behind the agent, meters.
+    pub behind: f64,
     /// Its width to each side, meters.
     pub aside: f64,
     /// The additional width to each side per length.
@@ -165,14 +167,15 @@ impl<R: Real, S: Simd> Walkers<R, S> {
             .mul_add_precise(time, splat::<R, S>(simd, -view.more_time));
         let reach = self.speed.mul_add_precise(time, length);
         let front = backwards * reach;
+        let back = backwards * splat::<R, S>(simd, view.behind);
         let (aside, spread) = (
             splat::<R, S>(simd, view.aside),
             splat::<R, S>(simd, -view.spread),
         );
         let side = across.abs() * reach.mul_add_precise(spread, aside);
         let walks = self.speed.simd_gt(zero);
-        let low = walks.select(at + front.min(zero) - side, zero);
-        let high = walks.select(at + front.max(zero) + side, zero);
+        let low = walks.select(at + front.min(back) - side, zero);
+        let high = walks.select(at + front.max(back) + side, zero);
         let (low, high) = (store::<R, S>(low), store::<R, S>(high));
         [fold(low, f64::min), fold(high, f64::max)]
     }

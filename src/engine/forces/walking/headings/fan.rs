@@ -164,10 +164,8 @@ impl Headings {
                 velocity_x * y - velocity_y * x,
             ],
             turned: turned.map(|of| [splat::<R, S>(simd, of.x), splat::<R, S>(simd, of.y)]),
-            times: [
-                splat::<R, S>(simd, self.headway.headway_anticipation),
-                splat::<R, S>(simd, self.evasion_time),
-            ],
+            time: splat::<R, S>(simd, self.headway.headway_anticipation),
+            evasion: splat::<R, S>(simd, self.evasion_time),
             leftward: splat::<R, S>(simd, self.side_preference),
             fastest: walkers.speed * splat::<R, S>(simd, -2.0),
             per_fade: splat::<R, S>(simd, 1.0 / fade),
@@ -204,8 +202,10 @@ struct Rooms<'a, R: Real, S: Simd, const MEETS: bool> {
     own: [Lanes<R, S>; 2],
     /// The cosine and the sine of each φ_k.
     turned: [[Lanes<R, S>; 2]; COUNT],
-    /// t and t_e, seconds.
-    times: [Lanes<R, S>; 2],
+    /// t, seconds.
+    time: Lanes<R, S>,
+    /// t_e, seconds.
+    evasion: Lanes<R, S>,
     /// b, meters.
     leftward: Lanes<R, S>,
     /// −2 s_i: agents come closer at this velocity at most, m/s.
@@ -224,6 +224,33 @@ struct Rooms<'a, R: Real, S: Simd, const MEETS: bool> {
     widest: Lanes<R, S>,
     /// The least d² so far, m².
     squared: [Lanes<R, S>; COUNT],
+}
+
+impl<R: Real, S: Simd, const MEETS: bool> Rooms<'_, R, S, MEETS> {
+    /// d², m², of an agent that is `along` a heading and `across` it, meters, and moves `away`, m/s.
+    #[inline(always)]
+    fn distance_squared(
+        &self,
+        simd: S,
+        [along, across, away]: [Lanes<R, S>; 3],
+        [evasion, shift]: [Lanes<R, S>; 2],
+    ) -> Lanes<R, S> {
+        let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
+        let across = if MEETS { across + shift } else { across };
+        let expected = away.max(zero).mul_add_precise(self.time, along);
+        let expected = match MEETS {
+            true => {
+                let closing = away.min(zero).max(self.fastest);
+                closing.mul_add_precise(evasion, expected).max(zero)
+            }
+            false => expected,
+        };
+        let aside = across.abs().mul_add_precise(self.per_fade, self.edge);
+        let behind = (one - along * self.per_fade).max(zero);
+        let inside = across.mul_add_precise(across, expected * expected);
+        self.far_squared
+            .mul_add_precise(aside.max(zero) + behind, inside)
+    }
 }
 
 impl<'a, R: Real, S: Simd, const MEETS: bool> PairSum<R, S> for Rooms<'a, R, S, MEETS> {
@@ -259,31 +286,31 @@ impl<'a, R: Real, S: Simd, const MEETS: bool> PairSum<R, S> for Rooms<'a, R, S, 
         let [v_x, v_y] = motions.velocity(simd, j);
         let faster = self.own[0] - v_y.mul_add_precise(y, v_x * x);
         let leftward = v_x * y - v_y * x - self.own[1];
-        let [time, evasion] = self.times;
-        let evasion = evasion * oncoming;
+        let evasion = self.evasion * oncoming;
         let shift = self.leftward * oncoming;
-        let mut widest = zero;
-        for (squared, [cosine, sine]) in self.squared.iter_mut().zip(self.turned) {
-            let along = left.mul_add_precise(sine, ahead * cosine);
-            let across = left * cosine - ahead * sine;
-            let across = if MEETS { across + shift } else { across };
-            let away = leftward.mul_add_precise(sine, faster * cosine);
-            let expected = away.max(zero).mul_add_precise(time, along);
-            let expected = match MEETS {
-                true => {
-                    let closing = away.min(zero).max(self.fastest);
-                    closing.mul_add_precise(evasion, expected).max(zero)
-                }
-                false => expected,
-            };
-            let aside = across
-                .abs()
-                .mul_add_precise(self.per_fade, self.edge)
-                .max(zero);
-            let behind = (one - along * self.per_fade).max(zero);
-            let inside = across.mul_add_precise(across, expected * expected);
-            *squared = squared.min(self.far_squared.mul_add_precise(aside + behind, inside));
-            widest = widest.max(*squared);
+        let straight = self.distance_squared(simd, [ahead, left, faster], [evasion, shift]);
+        self.squared[STRAIGHT] = self.squared[STRAIGHT].min(straight);
+        let mut widest = self.squared[STRAIGHT];
+        // Headings at the same angle to the left and to the right share products.
+        for aside in 1..=STRAIGHT {
+            let [cosine, sine] = self.turned[STRAIGHT + aside];
+            let [along, across] = [ahead * cosine, left * cosine];
+            let [behind, away] = [ahead * sine, faster * cosine];
+            let to_left = [
+                left.mul_add_precise(sine, along),
+                across - behind,
+                leftward.mul_add_precise(sine, away),
+            ];
+            let to_right = [
+                left.mul_add_precise(-sine, along),
+                across + behind,
+                leftward.mul_add_precise(-sine, away),
+            ];
+            for (k, seen) in [(STRAIGHT + aside, to_left), (STRAIGHT - aside, to_right)] {
+                let squared = self.distance_squared(simd, seen, [evasion, shift]);
+                self.squared[k] = self.squared[k].min(squared);
+                widest = widest.max(self.squared[k]);
+            }
         }
         self.widest = widest * splat::<R, S>(simd, ROUNDING);
     }

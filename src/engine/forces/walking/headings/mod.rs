@@ -202,9 +202,11 @@ impl Headings {
     /// The rectangle around an agent in which others count.
     pub(super) fn view(&self) -> View {
         let one_way = self.view_of_one_way();
+        let aside = one_way.aside + self.side_preference.abs();
         View {
             more_time: 2.0 * self.evasion_time,
-            aside: one_way.aside + self.side_preference.abs(),
+            aside,
+            behind: aside * one_way.spread,
             ..one_way
         }
     }
@@ -212,10 +214,14 @@ impl Headings {
     /// The rectangle around an agent in which others count if no agent wants to walk against another one.
     pub(super) fn view_of_one_way(&self) -> View {
         let lane = self.headway.view();
+        let aside = (1.0 + FADE) * self.heading_half_width;
+        // The edge of the lane along the outermost heading begins behind the agent.
+        let spread = sin(self.heading_angle.to_radians());
         View {
             length: lane.length + self.look_ahead,
-            aside: (1.0 + FADE) * self.heading_half_width,
-            spread: sin(self.heading_angle.to_radians()),
+            aside,
+            behind: aside * spread,
+            spread,
             ..lane
         }
     }
