@@ -135,6 +135,26 @@ fn few_functions_are_long_few_names_are_bound_again_and_few_arguments_are_wide_t
     assert!(tuples <= MOST_TUPLES, "{tuples} functions with wide tuples");
 }
 
+/// Functions of floating-point numbers that differ between systems, or between processors with other vectors.
+const DIFFER: [&str; 22] = [
+    "exp", "exp2", "exp_m1", "ln", "ln_1p", "log", "log2", "log10", "powf", "sin", "cos", "tan",
+    "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "hypot", "mul_add",
+];
+
+#[test]
+fn states_and_measured_values_come_from_functions_that_are_the_same_everywhere() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let folders = ["engine", "scenario", "analysis"].map(|folder| source.join(folder));
+    let mut found = Vec::new();
+    for path in folders.iter().flat_map(|folder| files(folder)) {
+        for (number, line) in code(&path) {
+            let calls = DIFFER.iter().filter(|name| line.contains(&format!(".{name}(")));
+            found.extend(calls.map(|name| format!("{}:{number}: {name}", path.display())));
+        }
+    }
+    assert!(found.is_empty(), "use libm, and mul_add_precise: {found:#?}");
+}
+
 #[test]
 fn the_counts_are_those_of_small_texts() {
     let lines: Vec<String> = SMALL.lines().map(str::to_owned).collect();

@@ -115,6 +115,36 @@ fn agents_choose_the_heading_with_the_greatest_utility() {
     }
 }
 
+/// Found by crowds whose choices depended on how agents were grouped: the edge of the lane along the outermost heading
+/// begins behind the agent, and nobody looked there.
+#[test]
+fn agents_see_others_beside_their_outermost_headings() {
+    let law = law();
+    let mut kept_away = 0;
+    for (place, side) in (0..30).flat_map(|k| [(k, 1.0), (k, -1.0)]) {
+        let back = 0.02 * f64::from(place);
+        for aside in [0.1, 0.2, 0.3, 0.4] {
+            let others = [0.6, 0.3, 0.0, -0.3].map(|y| vector(0.5, side * y));
+            let others = others.into_iter().chain([vector(-back, side * aside)]);
+            let all = [Vector::zeros()].into_iter().chain(others);
+            let agents = all.map(|place| person(place, place + vector(100.0, 0.0)));
+            let simulation = evaluated(lone(agents.collect(), Vec::new()));
+            let frame = simulation.frame();
+            let i = frame.agents.id.iter().position(|&id| id == 0).unwrap();
+            let all = utilities(&simulation, i, &law);
+            let best = all.iter().copied().fold(f64::MIN, f64::max);
+            let held = frame.agents.heading[i];
+            let chosen = all[(STRAIGHT as i32 + i32::from(held)) as usize];
+            assert!(
+                best - chosen <= 1e-4,
+                "{back} {aside} {side}: {all:?}, {held}"
+            );
+            kept_away += usize::from(held.abs() < 3);
+        }
+    }
+    assert!(kept_away > 0);
+}
+
 #[test]
 fn agents_keep_the_time_gap_along_their_heading() {
     let law = law();

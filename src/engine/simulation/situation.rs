@@ -76,6 +76,11 @@ fn opposed(frame: &Frame, i: usize) -> f64 {
     let walls = frame.neighbors.seen_walls(frame.walls, p).iter();
     let mut nearest: f64 = 0.0;
     for (j, r_ij) in frame.around(i, OPPOSED_WITHIN) {
+        // Most are far away or walk along: no roots for these.
+        let walks_along = frame.fields.preferred_velocity[j].dot(&way) >= 0.0;
+        if walks_along || r_ij.norm_squared() >= OPPOSED_WITHIN * OPPOSED_WITHIN {
+            continue;
+        }
         let near = (2.0 * (1.0 - r_ij.norm() / OPPOSED_WITHIN)).min(1.0);
         let alike = direction(frame.fields.preferred_velocity[j]).dot(&way);
         let counts =
