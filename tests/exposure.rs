@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use crate::common::simulated::{after, measured, scenario, start};
 use crate::common::vector;
+use sandbox::analysis::evaluated::Evaluated;
 use sandbox::analysis::exposure::Exposure;
-use sandbox::analysis::local::{KERNEL, Local, People, local};
+use sandbox::analysis::local::{KERNEL, Local, People};
 use sandbox::analysis::service::{QUEUE, WALKWAY, densities, level};
 use sandbox::analysis::site::Site;
 use sandbox::engine::kernel;
@@ -28,6 +29,11 @@ fn at_rest(places: impl Iterator<Item = Vector>) -> People {
             .zip(places)
             .map(|(k, p)| (k, p, Some(Vector::zeros()))),
     )
+}
+
+/// The people of an evaluated frame with their surroundings and pressures, by id.
+fn local(simulation: &Simulation) -> Vec<Local> {
+    Evaluated::new(simulation).people(true).to_vec()
 }
 
 #[test]
@@ -131,8 +137,8 @@ fn in_a_period_shorter_than_the_kernel_people_count_as_often_as_they_are_seen() 
         simulation.evaluate().unwrap();
         simulation
     };
-    let rings = local(&evaluated(&document(true)), true);
-    let row = local(&evaluated(&document(false)), true);
+    let rings = local(&evaluated(&document(true)));
+    let row = local(&evaluated(&document(false)));
     for (k, person) in rings.iter().enumerate() {
         let same = row[3 * 3 + k];
         assert_eq!(person.position, same.position);
@@ -201,7 +207,7 @@ fn standing() -> Value {
 fn a_standing_crowd_is_exposed_all_the_time_wherever_it_is_dense() {
     let mut simulation = start(&standing(), &[]);
     simulation.evaluate().unwrap();
-    let people = local(&simulation, false);
+    let people = local(&simulation);
     let above = |density: f64| people.iter().filter(|one| one.density > density).count() as f64;
     assert!(above(4.0) > above(5.0) && above(5.0) > above(6.0) && above(6.0) > 10.0);
     let summary = measured(standing());
@@ -349,7 +355,7 @@ fn people_in_a_run_have_the_density_that_trajectories_of_them_have() {
     });
     let mut simulation = after(&document, &[], 3.0);
     simulation.evaluate().unwrap();
-    let in_run = local(&simulation, true);
+    let in_run = local(&simulation);
     let site = Site::new(simulation.scene().walls.obstacles().to_vec());
     let people = People::of(simulation.frame().agents, None);
     assert_eq!(people.local(&people.at(&site), true), in_run);

@@ -148,11 +148,16 @@ fn states_and_measured_values_come_from_functions_that_are_the_same_everywhere()
     let mut found = Vec::new();
     for path in folders.iter().flat_map(|folder| files(folder)) {
         for (number, line) in code(&path) {
-            let calls = DIFFER.iter().filter(|name| line.contains(&format!(".{name}(")));
+            let calls = DIFFER
+                .iter()
+                .filter(|name| line.contains(&format!(".{name}(")));
             found.extend(calls.map(|name| format!("{}:{number}: {name}", path.display())));
         }
     }
-    assert!(found.is_empty(), "use libm, and mul_add_precise: {found:#?}");
+    assert!(
+        found.is_empty(),
+        "use libm, and mul_add_precise: {found:#?}"
+    );
 }
 
 #[test]

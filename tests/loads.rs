@@ -5,6 +5,7 @@ use crate::common::{
     blend, blend_with, breakdown, evaluated, on_threads, person, rectangle, room, scene, vector,
 };
 use sandbox::analysis::body_forces::{BODY_MASS, BodyForces, Pressed, WIDTH, pressed};
+use sandbox::analysis::evaluated::Evaluated;
 use sandbox::analysis::local::KERNEL;
 use sandbox::analysis::wall_forces::Outlines;
 use sandbox::engine::agents::NewAgent;
@@ -66,7 +67,7 @@ fn a_pair_presses_with_equal_newtons_whatever_the_masses() {
     let h = KERNEL.support_radius;
     let distance = (a - b).norm();
     let density = kernel::density(0.0, h) + kernel::density(distance * distance, h);
-    for person in pressed(&simulation, BODY_MASS) {
+    for person in pressed(&Evaluated::new(&simulation), BODY_MASS) {
         let stress = 0.5 * density * distance * newtons[0].norm();
         close(person.force, stress * WIDTH, 1e-9);
         let [xx, _, yy] = person.stress;
@@ -93,7 +94,7 @@ fn in_a_hexagonal_lattice_in_contact_the_stress_is_that_of_its_bonds() {
     let simulation = evaluated(scene);
     let force = stiffness * (2.0 * radius - d) * BODY_MASS;
     let expected = 3_f64.sqrt() * force / d;
-    let people = pressed(&simulation, BODY_MASS);
+    let people = pressed(&Evaluated::new(&simulation), BODY_MASS);
     let center = people
         .iter()
         .find(|person| person.position.norm() < 1e-9)
@@ -127,13 +128,13 @@ fn a_row_that_pushes_against_a_wall_presses_it_with_the_sum_of_its_pushes() {
     // Each person pushes with 1.4 m/s / 0.5 s times the mass of an average person, whatever its own mass.
     let push = 1.4 / 0.5 * BODY_MASS;
     let outlines = Outlines::new(simulation.frame().walls);
-    let forces = outlines.forces(&simulation, BODY_MASS);
+    let forces = outlines.forces(&Evaluated::new(&simulation), BODY_MASS);
     close(forces.iter().sum(), 3.0 * push, 1e-6);
     // All of it is on one cell, so that the mean over 1 m is the same number.
     let most = outlines.per_meter(&forces).into_iter().fold(0.0, f64::max);
     close(most, 3.0 * push, 1e-6);
     // The first in the row is pressed between the wall and the second by 3 and 2 pushes.
-    let people = pressed(&simulation, BODY_MASS);
+    let people = pressed(&Evaluated::new(&simulation), BODY_MASS);
     assert!(people[0].force > people[1].force && people[1].force > people[2].force);
 }
 

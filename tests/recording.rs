@@ -6,6 +6,7 @@ use crate::common::polygon;
 use crate::common::recorded::{acceleration, options, record, scene};
 use crate::common::recording::Recording;
 use rerun::components::{ImageBuffer, ImageFormat, Scale3D, Translation3D};
+use sandbox::analysis::evaluated::Evaluated;
 use sandbox::analysis::wall_forces::Outlines;
 use sandbox::engine::geometry::{Area, Polygon, Ring, Walls};
 use sandbox::engine::math::Vector;
@@ -268,7 +269,7 @@ fn walls_are_colored_by_the_force_on_them_where_it_is_measured() {
         simulation.evaluate().unwrap();
         recorder.log(&simulation, 1.0).unwrap();
         let outlines = Outlines::new(simulation.frame().walls);
-        let forces = outlines.per_meter(&outlines.forces(&simulation, 60.0));
+        let forces = outlines.per_meter(&outlines.forces(&Evaluated::new(&simulation), 60.0));
         let pressed = forces.iter().filter(|&&force| force > 0.0).count();
         expected.push((forces.into_iter().fold(0.0, f64::max), pressed));
         simulation.integrate().unwrap();

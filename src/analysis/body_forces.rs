@@ -8,10 +8,9 @@
 use libm::hypot;
 use serde::{Deserialize, Serialize};
 
+use super::evaluated::Evaluated;
 use super::exposure::{Spell, Weight};
-use super::local::local;
 use engine::math::Vector;
-use engine::simulation::Simulation;
 
 /// The mass of an average person, m = 1, if none is given, kg.
 pub const BODY_MASS: f64 = 75.0;
@@ -35,20 +34,19 @@ pub struct Pressed {
 }
 
 /// The stress and the force on each agent of an evaluated frame, by id.
-pub fn pressed(simulation: &Simulation, body_mass: f64) -> Vec<Pressed> {
-    let frame = simulation.frame();
-    let (agents, walls) = (frame.agents, frame.walls);
-    let mut virials = simulation.virials();
-    simulation.each_wall_push(|i, wall, push| {
-        let r_i = agents.position[i];
-        let arm = (r_i - walls.wall(wall).nearest_point(r_i).point) * 2.0;
+pub fn pressed(evaluated: &Evaluated, body_mass: f64) -> Vec<Pressed> {
+    let agents = evaluated.simulation.frame().agents;
+    let mut virials = evaluated.simulation.virials();
+    for wall in evaluated.wall_pushes() {
+        let (i, push) = (wall.agent, wall.push);
+        let arm = (agents.position[i] - wall.nearest) * 2.0;
         let xy = 0.5 * (arm.x * push.y + arm.y * push.x);
         let own = [arm.x * push.x, xy, arm.y * push.y];
         (0..3).for_each(|k| virials[i][k] += own[k]);
-    });
+    }
     let mut order: Vec<usize> = agents.present().collect();
     order.sort_unstable_by_key(|&i| agents.id[i]);
-    let people = order.into_iter().zip(local(simulation, false));
+    let people = order.into_iter().zip(evaluated.people(false));
     let pressed = people.map(|(i, person)| {
         let scale = -0.5 * person.density * body_mass * agents.mass[i];
         let stress = virials[i].map(|virial| virial * scale);

@@ -33,6 +33,8 @@ pub mod surroundings;
 
 pub mod local;
 
+pub mod evaluated;
+
 pub mod exposure;
 
 pub mod service;

@@ -13,7 +13,6 @@ use engine::boundary::WallMethod;
 use engine::geometry::Walls;
 use engine::math::Vector;
 use engine::period::Period;
-use engine::simulation::Simulation;
 
 /// The kernel: h = √5 m, and the union of the regions hidden by walls.
 pub const KERNEL: Kernel = Kernel {
@@ -100,7 +99,7 @@ impl People {
     }
 
     /// The surroundings of people, all of whom must be outside of the obstacles.
-    fn among<'a>(&self, walls: &'a Walls) -> Surroundings<'a> {
+    pub(super) fn among<'a>(&self, walls: &'a Walls) -> Surroundings<'a> {
         let hide = |p, near: &mut Vec<u32>| Hidden {
             share: KERNEL.share(walls, p, near),
             eye: p,
@@ -109,31 +108,31 @@ impl People {
         Surroundings::new(walls, &self.positions, &[], KERNEL.support_radius, hide)
     }
 
-    /// The people with their surroundings, in their order, with pressures if `pressure`: ρ Var(v), where Var(v) = Σ W
-    /// |v_j − V|² / Σ W and V is the mean velocity with the same weights.
+    /// The people with their surroundings, in their order, with pressures if `pressure`.
     pub fn local(&self, around: &Surroundings, pressure: bool) -> Vec<Local> {
         let sums = around.from_people(true);
-        let moments = pressure.then(|| around.moments(&self.velocities));
         let people = self.numbers.iter().zip(sums).enumerate();
-        let local = people.map(|(k, (&number, sum))| {
-            let density = sum / (1.0 - around.hidden(k).share.min(MOST_HIDDEN));
-            let moments = moments.as_ref().map(|moments| moments[k]);
-            let variance = moments.and_then(|moments| moments.variance());
-            Local {
-                number,
-                position: self.positions[k],
-                speed: self.velocities[k].map(|v| v.norm()),
-                density,
-                pressure: variance.map(|variance| density * variance),
-            }
+        let local = people.map(|(k, (&number, sum))| Local {
+            number,
+            position: self.positions[k],
+            speed: self.velocities[k].map(|v| v.norm()),
+            density: sum / (1.0 - around.hidden(k).share.min(MOST_HIDDEN)),
+            pressure: None,
         });
-        local.collect()
+        let mut local: Vec<Local> = local.collect();
+        if pressure {
+            self.add_pressures(around, &mut local);
+        }
+        local
     }
-}
 
-/// The agents of an evaluated frame with their surroundings, by id, with pressures if `pressure`.
-pub fn local(simulation: &Simulation, pressure: bool) -> Vec<Local> {
-    let scene = simulation.scene();
-    let people = People::of(simulation.frame().agents, scene.period.as_ref());
-    people.local(&people.among(&scene.walls), pressure)
+    /// Adds the pressures ρ Var(v), where Var(v) = Σ W |v_j − V|² / Σ W and V is the mean velocity with the same
+    /// weights.
+    pub(super) fn add_pressures(&self, around: &Surroundings, local: &mut [Local]) {
+        let moments = around.moments(&self.velocities);
+        for (person, moments) in local.iter_mut().zip(moments) {
+            let variance = moments.variance();
+            person.pressure = variance.map(|variance| person.density * variance);
+        }
+    }
 }

@@ -25,10 +25,8 @@ pub struct Kernel {
 impl Kernel {
     /// The share of the kernel at `p`, outside obstacles, that the walls in `near` hide.
     pub fn share(&self, walls: &Walls, p: Vector, near: &[u32]) -> f64 {
-        let mut share = 0.0;
         let (method, h) = (self.walls, self.support_radius);
-        method.shares(walls, near, p, h, |wall| share += wall.kernel);
-        share
+        method.hidden_kernel(walls, near, p, h)
     }
 }
 

@@ -11,12 +11,15 @@ use engine::agents::{Agents, NewAgent, REFERENCE_RADIUS};
 use engine::density::from_agents;
 use engine::geometry::Walls;
 use engine::kernel;
-use engine::math::Vector;
+use engine::math::{Vector, bounds};
 use engine::neighbors::{BLOCK, Neighbors, Ranges};
 use engine::pairs::{Bodies, Reach};
 
 /// At most this share of a kernel counts as hidden: in a narrow gap, the visible rest is too small to be meaningful.
 pub const MOST_HIDDEN: f64 = 0.9;
+
+/// Walls hide nobody who is farther in front of them than this, meters: more than the rounding of distances.
+const ON_WALL: f64 = 1e-9;
 
 /// The people around each person in a frame.
 pub struct Surroundings<'a> {
@@ -26,10 +29,12 @@ pub struct Surroundings<'a> {
     /// Sorted; their ids count the people in the given order.
     agents: Agents,
     neighbors: Neighbors,
-    /// The walls near each agent.
-    near_walls: Vec<Vec<u32>>,
+    /// The walls near agents that lean over walls, in place of those that `neighbors` lists.
+    near_eye: Vec<Option<Vec<u32>>>,
     /// The part of the kernel that walls hide from each agent.
     hidden: Vec<Hidden>,
+    /// The corners of the rectangle around all agents, meters; `None` if some lean over walls.
+    extent: Option<[Vector; 2]>,
     /// The index of each person.
     index: Vec<usize>,
 }
@@ -43,7 +48,7 @@ impl<'a> Surroundings<'a> {
         positions: &[Vector],
         masses: &[f64],
         support_radius: f64,
-        hide: impl Fn(Vector, &mut Vec<u32>) -> Hidden,
+        hide: impl Fn(Vector, &mut Vec<u32>) -> Hidden + Sync,
     ) -> Self {
         let mut agents = Agents::default();
         for (k, &position) in positions.iter().enumerate() {
@@ -62,12 +67,17 @@ impl<'a> Surroundings<'a> {
         neighbors.sort(&mut agents, ranges);
         neighbors.list_agents();
         neighbors.list_walls(&agents, walls);
-        let seen = (0..agents.len()).map(|i| {
-            let mut near = neighbors.near_walls(i).to_vec();
-            let hidden = hide(agents.position[i], &mut near);
-            (near, hidden)
+        let seen = agents.position.par_iter().enumerate().with_min_len(BLOCK);
+        let seen = seen.map_init(Vec::new, |near: &mut Vec<u32>, (i, &position)| {
+            let listed = neighbors.near_walls(i);
+            near.clear();
+            near.extend_from_slice(listed);
+            let hidden = hide(position, near);
+            (hidden, (near != listed).then(|| near.clone()))
         });
-        let (near_walls, hidden) = seen.unzip();
+        let (hidden, near_eye): (Vec<Hidden>, Vec<_>) = seen.unzip();
+        let all_outside = hidden.iter().all(|hidden| hidden.inside.is_none());
+        let extent = bounds(positions.iter().copied()).filter(|_| all_outside);
         let mut index = vec![0; agents.len()];
         for (i, &id) in agents.id.iter().enumerate() {
             index[id as usize] = i;
@@ -77,8 +87,9 @@ impl<'a> Surroundings<'a> {
             support_radius,
             agents,
             neighbors,
-            near_walls,
+            near_eye,
             hidden,
+            extent,
             index,
         }
     }
@@ -98,11 +109,41 @@ impl<'a> Surroundings<'a> {
         let mut sums = vec![0.0; agents.len()];
         let blocks = sums.par_chunks_mut(BLOCK).enumerate();
         blocks.for_each(|(b, sums)| from_agents(&bodies, self.neighbors.near().block(b), sums));
-        let near_walls = |i: &usize| only_visible && !self.near_walls[*i].is_empty();
-        for i in (0..agents.len()).filter(near_walls) {
-            sums[i] = self.visible(i).map(|(_, weight)| weight).sum();
+        if only_visible {
+            let sums = sums.par_iter_mut().enumerate().with_min_len(BLOCK);
+            let partly = sums.filter(|(i, _)| self.sees_partly(*i));
+            partly.for_each(|(i, sum)| *sum = self.visible(i).map(|(_, weight)| weight).sum());
         }
         self.index.iter().map(|&i| sums[i]).collect()
+    }
+
+    /// The walls within h of the eye of agent `i`.
+    fn near_walls(&self, i: usize) -> &[u32] {
+        let listed = || self.neighbors.near_walls(i);
+        self.near_eye[i].as_deref().unwrap_or_else(listed)
+    }
+
+    /// Whether walls may stand between agent `i` and others within h.
+    fn sees_partly(&self, i: usize) -> bool {
+        let near = self.near_walls(i);
+        let Some([low, high]) = self.extent else {
+            return !near.is_empty();
+        };
+        let (eye, reach) = (self.hidden[i].eye, Vector::repeat(self.support_radius));
+        let [low, high] = [low.sup(&(eye - reach)), high.inf(&(eye + reach))];
+        let may_hide = |&k: &u32| {
+            let wall = self.walls.wall(k);
+            let farthest_behind =
+                low.zip_zip_map(
+                    &high,
+                    &wall.normal,
+                    |low, high, normal| {
+                        if normal > 0.0 { low } else { high }
+                    },
+                );
+            wall.faces(eye) && wall.signed_distance(farthest_behind) < ON_WALL
+        };
+        near.iter().any(may_hide)
     }
 
     fn reach(&self) -> Reach {
@@ -128,7 +169,7 @@ impl<'a> Surroundings<'a> {
         blocks.for_each(|(b, found)| {
             moments::of_block(&bodies, self.neighbors.near().block(b), found);
             for (i, found) in (b * BLOCK..).zip(found) {
-                if !self.near_walls[i].is_empty() {
+                if self.sees_partly(i) {
                     *found = Moments::default();
                     for (j, weight) in self.visible(i) {
                         found.add(weight * agents.mass[j], agents.velocity[j]);
@@ -141,7 +182,7 @@ impl<'a> Surroundings<'a> {
 
     /// The agents j that agent `i` sees, itself included, each with m_j W in P/m².
     fn visible(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let (agents, near, eye) = (&self.agents, &self.near_walls[i], self.hidden[i].eye);
+        let (agents, near, eye) = (&self.agents, self.near_walls(i), self.hidden[i].eye);
         let candidates = self.neighbors.near().near(i).map(|(j, _)| j);
         let weighted = candidates.map(move |j| {
             let offset = agents.position[i] - agents.position[j];

@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use super::evaluated::Evaluated;
 use super::exposure::{Spell, Weight};
 use engine::geometry::Walls;
 use engine::math::Vector;
@@ -83,26 +84,24 @@ impl Outlines {
         simulation: &Simulation,
         body_mass: f64,
     ) -> impl Iterator<Item = ([Vector; 2], f64)> {
-        let forces = self.per_meter(&self.forces(simulation, body_mass));
+        let forces = self.per_meter(&self.forces(&Evaluated::new(simulation), body_mass));
         let cells = self.cells.iter().map(|cell| cell.ends).zip(forces);
         cells.filter(|&(_, force)| force > 0.0)
     }
 
     /// The force on each cell in an evaluated frame, newtons.
-    pub fn forces(&self, simulation: &Simulation, body_mass: f64) -> Vec<f64> {
-        let frame = simulation.frame();
-        let (agents, walls) = (frame.agents, frame.walls);
+    pub fn forces(&self, evaluated: &Evaluated, body_mass: f64) -> Vec<f64> {
+        let frame = evaluated.simulation.frame();
         let mut forces = vec![0.0; self.cells.len()];
-        simulation.each_wall_push(|i, k, push| {
-            let (wall, own) = (walls.wall(k), self.first[k as usize]);
-            let count = self.first[k as usize + 1] - own;
-            let nearest = wall.nearest_point(agents.position[i]).point;
-            let part = (nearest - wall.start).dot(&wall.tangent) / wall.length();
+        for push in evaluated.wall_pushes() {
+            let (wall, own) = (frame.walls.wall(push.wall), self.first[push.wall as usize]);
+            let count = self.first[push.wall as usize + 1] - own;
+            let part = (push.nearest - wall.start).dot(&wall.tangent) / wall.length();
             let cell = ((part * count as f64) as usize).min(count - 1);
             // Contact counts both faces of a thin wall.
-            let force = push.dot(&wall.normal).abs() * agents.mass[i] * body_mass;
-            forces[own + cell] += force;
-        });
+            let normal = push.push.dot(&wall.normal).abs();
+            forces[own + cell] += normal * frame.agents.mass[push.agent] * body_mass;
+        }
         forces
     }
 
@@ -117,9 +116,11 @@ impl Outlines {
                 continue;
             }
             let sums = Sums::of(cells.iter().map(Cell::length), forces);
+            let mut cells = [0; 2];
             for (k, mean) in means[ring.clone()].iter_mut().enumerate() {
                 let middle = 0.5 * (sums.lengths[k] + sums.lengths[k + 1]);
-                let [low, high] = [-0.5, 0.5].map(|side| sums.at(middle + side * WINDOW));
+                let low = sums.at(middle - 0.5 * WINDOW, &mut cells[0]);
+                let high = sums.at(middle + 0.5 * WINDOW, &mut cells[1]);
                 let within = if sums.length() > WINDOW {
                     high - low
                 } else {
@@ -176,13 +177,19 @@ impl Sums {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// The sum of the forces up to a place along the outline, which goes round and round.
-    fn at(&self, place: f64) -> f64 {
+    /// The sum of the forces up to a place along the outline, which goes round and round. `k` is any cell, best one
+    /// near this place, and becomes the cell of this place.
+    fn at(&self, place: f64, k: &mut usize) -> f64 {
         let laps = (place / self.length()).floor();
         let place = place - laps * self.length();
         let last = self.lengths.len() - 2;
-        let after = self.lengths.partition_point(|&end| end <= place);
-        let k = after.saturating_sub(1).min(last);
+        while *k < last && self.lengths[*k + 1] <= place {
+            *k += 1;
+        }
+        while *k > 0 && self.lengths[*k] > place {
+            *k -= 1;
+        }
+        let k = *k;
         let part = (place - self.lengths[k]) / (self.lengths[k + 1] - self.lengths[k]);
         let total = self.forces[last + 1];
         laps * total + self.forces[k] + part * (self.forces[k + 1] - self.forces[k])
@@ -230,25 +237,17 @@ pub struct WallForces {
 
 impl WallForces {
     /// Adds an evaluated frame.
-    pub fn add(&mut self, simulation: &Simulation, body_mass: f64) {
-        let walls = simulation.frame().walls;
-        let time = simulation.frame().clock.time();
-        let outlines = self.outlines.get_or_insert_with(|| Outlines::new(walls));
-        let forces = outlines.forces(simulation, body_mass);
+    pub fn add(&mut self, evaluated: &Evaluated, body_mass: f64) {
+        let frame = evaluated.simulation.frame();
+        let known = self.outlines.take();
+        let outlines = known.unwrap_or_else(|| Outlines::new(frame.walls));
+        let forces = outlines.forces(evaluated, body_mass);
         let means = outlines.per_meter(&forces);
         let mut above = 0.0;
         for ((k, &force), cell) in means.iter().enumerate().zip(&outlines.cells) {
             if self.peak.is_none_or(|peak| force > peak.force) {
-                let place = outlines.center(k, &forces);
+                let (time, place) = (frame.clock.time(), outlines.center(k, &forces));
                 self.peak = Some(Peak { force, time, place });
-            }
-            if force > 0.0 {
-                let most = self.most.entry(k).or_insert_with(|| CellForce {
-                    wall: cell.wall,
-                    ends: cell.ends.map(Into::into),
-                    max_n_per_m: 0.0,
-                });
-                most.max_n_per_m = most.max_n_per_m.max(force);
             }
             above += if force > DESIGN_LOAD {
                 cell.length()
@@ -256,8 +255,29 @@ impl WallForces {
                 0.0
             };
         }
+        self.add_means(&outlines, &means);
         self.spell.add(above > 0.0, self.weight.of_next());
         self.meters = self.meters.max(above);
+        self.outlines = Some(outlines);
+    }
+
+    /// Takes the means around all cells, N/m.
+    fn add_means(&mut self, outlines: &Outlines, means: &[f64]) {
+        let mut seen = self.most.iter_mut().peekable();
+        let mut new = Vec::new();
+        for ((k, &force), cell) in means.iter().enumerate().zip(&outlines.cells) {
+            if let Some((_, most)) = seen.next_if(|(own, _)| **own == k) {
+                most.max_n_per_m = most.max_n_per_m.max(force);
+            } else if force > 0.0 {
+                let most = CellForce {
+                    wall: cell.wall,
+                    ends: cell.ends.map(Into::into),
+                    max_n_per_m: force,
+                };
+                new.push((k, most));
+            }
+        }
+        self.most.extend(new);
     }
 
     /// The largest force on each part of the walls with a force above 0.

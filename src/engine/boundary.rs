@@ -81,6 +81,31 @@ impl WallMethod {
             }
         }
     }
+
+    /// The sum of the kernels of all [`shares`](Self::shares), without their gradients, which take most of the time.
+    pub fn hidden_kernel(self, walls: &Walls, candidates: &[u32], r_i: Vector, h: f64) -> f64 {
+        let behind = |&k: &u32| HiddenRegion::behind(walls.wall(k), r_i, h);
+        let mut hidden = candidates.iter().filter_map(behind);
+        let mut sum = 0.0;
+        match self {
+            Self::Representative => {
+                self.shares(walls, candidates, r_i, h, |share| sum += share.kernel);
+            }
+            Self::Exact => hidden.for_each(|region| sum += exact_kernel(&region)),
+            Self::Union => match [hidden.next(), hidden.next()] {
+                [Some(first), Some(second)] => {
+                    let regions: Vec<_> = [first, second].into_iter().chain(hidden).collect();
+                    let mut kernels = vec![0.0; regions.len()];
+                    for (index, part) in visible_parts(&regions) {
+                        kernels[index] += exact_kernel(&part);
+                    }
+                    kernels.iter().for_each(|kernel| sum += kernel);
+                }
+                [only, _] => sum = only.as_ref().map_or(0.0, exact_kernel),
+            },
+        }
+        sum
+    }
 }
 
 /// Eqs. 10 and 12: P_k is replaced by the point halfway between r_k* and the rim of the kernel.
@@ -118,6 +143,21 @@ fn exact(k: u32, region: &HiddenRegion) -> WallShare {
     }
 }
 
+/// ∫ W over a region, as in [`exact`].
+fn exact_kernel(region: &HiddenRegion) -> f64 {
+    let h = region.support_radius;
+    let at = |along: f64| kernel_antiderivative(region.distance / h, along / h);
+    (at(region.to) - at(region.from)) / (2.0 * PI)
+}
+
+/// The antiderivative of the kernel; see [`Antiderivatives`].
+fn kernel_antiderivative(q: f64, s: f64) -> f64 {
+    let (q2, s2) = (q * q, s * s);
+    atan2(s, q) - 4.0 * q * s + 6.0 * q * s * (q2 + s2 / 3.0)
+        - 4.0 * q * s * (q2 * q2 + 2.0 * q2 * s2 / 3.0 + s2 * s2 / 5.0)
+        + q * s * (q2 * q2 * q2 + q2 * q2 * s2 + 0.6 * q2 * s2 * s2 + s2 * s2 * s2 / 7.0)
+}
+
 /// Antiderivatives over the angle t in closed form, at one end of the wall.
 ///
 /// The radial integrals ∫ W r dr and ∫ |∇W| r dr from the wall to the rim are polynomials in the distance R of
@@ -136,15 +176,12 @@ impl Antiderivatives {
         let (q2, s2) = (q * q, s * s);
         let r2 = q2 + s2;
         let r = r2.sqrt();
-        let t = atan2(s, q);
         // q² A and q⁴ A vanish with q.
         let q2a = if q2 > 0.0 { q2 * (s / q).asinh() } else { 0.0 };
         // cos t and sin t. At q = s = 0 the direction is arbitrary: its weight is 0.
         let (cosine, sine) = if r > 0.0 { (q / r, s / r) } else { (1.0, 0.0) };
         Self {
-            kernel: t - 4.0 * q * s + 6.0 * q * s * (q2 + s2 / 3.0)
-                - 4.0 * q * s * (q2 * q2 + 2.0 * q2 * s2 / 3.0 + s2 * s2 / 5.0)
-                + q * s * (q2 * q2 * q2 + q2 * q2 * s2 + 0.6 * q2 * s2 * s2 + s2 * s2 * s2 / 7.0),
+            kernel: kernel_antiderivative(q, s),
             towards: sine - 6.0 * q2a + 8.0 * q2 * s - 1.5 * q2 * s * r - 1.5 * q2 * q2a,
             along: -cosine - 6.0 * q * r + 4.0 * q * r2 - q * r2 * r,
         }

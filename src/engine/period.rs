@@ -79,7 +79,11 @@ impl Period {
 
     /// The shortest of the differences between the images of two points that differ by `difference`, meters.
     pub fn shortest(&self, difference: Vector) -> Vector {
-        let laps = (self.along(difference) / self.length).round();
+        let along = self.along(difference);
+        if along.abs() < 0.4 * self.length {
+            return difference;
+        }
+        let laps = (along / self.length).round();
         difference - self.way(laps as i32)
     }
 }

@@ -8,6 +8,7 @@ use super::window::{MOST_MASS, Window, body_mass};
 use super::{About, Measure, Observed, Quantity};
 use crate::error::Problem;
 use analysis::body_forces::{BodyForces as Seen, PersonForce, THRESHOLDS, WIDTH, pressed};
+use analysis::evaluated::Evaluated;
 use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
@@ -98,14 +99,15 @@ impl Measure for BodyForces {
         quantities
     }
 
-    fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, (seen, secs): &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let window = self.window;
         if !window.samples.is_due(simulation) {
             return;
         }
         *secs = window.samples.secs(simulation);
         let region = window.region();
-        let mut people = pressed(simulation, self.body_mass_kg);
+        let mut people = pressed(evaluated, self.body_mass_kg);
         people.retain(|person| region.is_none_or(|region| region.contains(person.position)));
         seen.add(simulation.frame().clock.time(), &people);
     }

@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::{Measure, Observed, Quantity, is_due};
 use crate::keys::limits::LONGEST_TIME;
+use analysis::evaluated::Evaluated;
 use engine::simulation::Simulation;
 
 /// Time between the frames that are measured, seconds.
@@ -34,7 +35,8 @@ impl Measure for Closest {
         vec![Quantity::new("closest_centers", "D_i + D_j", meaning)]
     }
 
-    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         if is_due(simulation, [self.from_secs, f64::MAX], EVERY_SECS) {
             let now = closest(simulation);
             *seen = Some(seen.map_or(now, |before| before.min(now)));

@@ -7,6 +7,7 @@ use super::{Measure, Observed, Quantity};
 use crate::error::Problem;
 use crate::keys::limits::LONGEST_TIME;
 use crate::keys::shapes::{Corners, region};
+use analysis::evaluated::Evaluated;
 use analysis::sound::{self, Contacts};
 use engine::simulation::Simulation;
 
@@ -51,7 +52,8 @@ impl Measure for ContactsAt {
         ]
     }
 
-    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let frame = simulation.frame();
         if frame.clock.frame() == frame.clock.frame_at(self.at_secs) {
             *seen = sound::contacts(simulation, &self.region.into());

@@ -7,6 +7,7 @@ use super::window::Window;
 use super::{About, Measure, Observed, Quantity};
 use crate::error::Problem;
 use analysis::crowd_pressure::{BEFORE_ACCIDENT, Pressures};
+use analysis::evaluated::Evaluated;
 use engine::simulation::Simulation;
 
 /// The name of the values if none is given.
@@ -78,12 +79,13 @@ impl Measure for CrowdPressure {
         Quantity::all(self.name.as_deref().unwrap_or(NAME), &values)
     }
 
-    fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, (seen, secs): &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let window = self.window;
         if window.samples.is_due(simulation) {
             *secs = window.samples.secs(simulation);
             let time = simulation.frame().clock.time();
-            seen.add(time, window.people(simulation, true).iter());
+            seen.add(time, window.people(evaluated, true));
         }
     }
 

@@ -7,6 +7,7 @@ use super::{About, Measure, Observed, Quantity};
 use crate::error::Problem;
 use crate::keys::limits::LONGEST_TIME;
 use crate::keys::shapes::{Corners, region};
+use analysis::evaluated::Evaluated;
 use analysis::statistics::MeanStd;
 use engine::scene::Region;
 use engine::simulation::Simulation;
@@ -62,7 +63,8 @@ impl Measure for Density {
         About::with_density_until(self.at_secs)
     }
 
-    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let frame = simulation.frame();
         let densities = &frame.fields.density;
         if frame.clock.frame() != frame.clock.frame_at(self.at_secs) || densities.is_empty() {

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{About, Measure, Observed, Quantity};
+use analysis::evaluated::Evaluated;
 use engine::clock::Clock;
 use engine::journeys::{Kind, Status};
 use engine::math::Vector;
@@ -113,10 +114,14 @@ pub struct Seen {
     delays: Vec<f64>,
     /// The times in waiting areas of the agents that have left, seconds.
     rests: Vec<f64>,
-    /// The path maps to the fronts of queues, which follow from the scene.
+    /// They follow from the scene.
     #[serde(skip)]
-    fronts: BTreeMap<u16, Option<PathMap>>,
+    fronts: Fronts,
 }
+
+/// The path maps to the fronts of queues, by the number of the place.
+#[derive(Debug, Default)]
+struct Fronts(BTreeMap<u16, Option<PathMap>>);
 
 impl Walker {
     /// Follows its waits in waiting areas, which begin and end in coarse frames.
@@ -144,7 +149,7 @@ impl Egress {
     }
 }
 
-impl Seen {
+impl Fronts {
     /// The length of the shortest way from `from` to a place at which an agent at `end` ends a stage, meters; 0 if
     /// there is none. Of a queue, that place is the front, up to which agents are served, and the rest of the way there
     /// does not count.
@@ -156,8 +161,8 @@ impl Seen {
         let (way, rest) = match &scene.journeys.places[usize::from(number)].kind {
             Kind::Queue(queue) => {
                 let front = queue.path[0];
-                let new = || PathMap::new(&routes.floor, &[Goal::Point(front)], 0.0).ok();
-                let map = self.fronts.entry(number).or_insert_with(new);
+                let new = || PathMap::for_few(&routes.floor, &[Goal::Point(front)], 0.0).ok();
+                let map = self.0.entry(number).or_insert_with(new);
                 let way = map
                     .as_ref()
                     .and_then(|map| map.way_from(&routes.floor, from));
@@ -217,13 +222,14 @@ impl Measure for Egress {
         values.into_iter().map(quantity).collect()
     }
 
-    fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let (scene, frame) = (simulation.scene(), simulation.frame());
         let (clock, agents) = (frame.clock, frame.agents);
         for arrival in &simulation.outcome().arrivals[seen.arrivals..] {
             let walker = seen.walkers.get_mut(arrival.id as usize);
             if let (Some(trip), Some(walker)) = (arrival.trip, walker.and_then(Option::take)) {
-                let last = seen.length(simulation, trip.exit, [walker.from; 2]);
+                let last = seen.fronts.length(simulation, trip.exit, [walker.from; 2]);
                 let free = (walker.length + last) / walker.speed;
                 // People whose preferred speed is 0 do not walk freely.
                 let delay = Some(arrival.time - walker.due - walker.rested - free);
@@ -247,7 +253,7 @@ impl Measure for Egress {
             };
             let position = agents.position[i];
             let slot = agents.id[i] as usize;
-            let mut walker = seen.walkers[slot].unwrap_or_else(|| Walker {
+            let walker = seen.walkers[slot].get_or_insert_with(|| Walker {
                 due: (agents.walks_from.get(i)).map_or(trip.entered, |from| from.max(trip.entered)),
                 speed: (agents.preferred_speed.get(i).copied()).unwrap_or(scene.preferred_speed),
                 stage: trip.stage,
@@ -259,11 +265,11 @@ impl Measure for Egress {
             });
             walker.follow_wait(trip.status, clock);
             if walker.stage != trip.stage {
-                walker.length += seen.length(simulation, walker.place, [walker.from, position]);
+                let ends = [walker.from, position];
+                walker.length += seen.fronts.length(simulation, walker.place, ends);
                 (walker.stage, walker.from) = (trip.stage, position);
             }
             walker.place = trip.place;
-            seen.walkers[slot] = Some(walker);
         }
     }
 

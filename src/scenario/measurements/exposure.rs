@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::window::Window;
 use super::{About, Measure, Observed, Quantity};
 use crate::error::Problem;
+use analysis::evaluated::Evaluated;
 use analysis::exposure::{DENSITIES, Exposed, Exposure as Seen, PersonExposure};
 use engine::simulation::Simulation;
 
@@ -102,11 +103,12 @@ impl Measure for Exposure {
         dense.chain(slow).collect()
     }
 
-    fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, (seen, secs): &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let window = self.window;
         if window.samples.is_due(simulation) {
             *secs = window.samples.secs(simulation);
-            seen.add(window.people(simulation, false).iter());
+            seen.add(window.people(evaluated, false));
         }
     }
 

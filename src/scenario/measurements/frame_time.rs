@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 
 use super::{Measure, Observed};
 use crate::keys::limits::LONGEST_TIME;
-use engine::simulation::{Simulation, Stage};
+use analysis::evaluated::Evaluated;
+use engine::simulation::Stage;
 
 /// The computing time per frame from a given time on, milliseconds, for each stage. It depends on the machine and on
 /// what runs beside it, so it is data rather than a value.
@@ -64,7 +65,8 @@ impl Measure for FrameTime {
         Vec::new()
     }
 
-    fn observe(&self, (first, last, agents): &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, (first, last, agents): &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let frame = simulation.frame();
         let now = frame.clock.frame();
         if now < frame.clock.frame_at(self.from_secs) {

@@ -8,6 +8,7 @@ use super::{Measure, Observed, Quantity};
 use crate::error::Problem;
 use crate::keys::limits::LONGEST_TIME;
 use crate::keys::shapes::{Corners, Point, wide_region};
+use analysis::evaluated::Evaluated;
 use analysis::front;
 use analysis::statistics::Estimate;
 use engine::math::{Vector, direction};
@@ -151,7 +152,8 @@ impl Measure for Front {
         Quantity::all(self.name(), &values)
     }
 
-    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let (scene, frame) = (simulation.scene(), simulation.frame());
         let (clock, agents) = (frame.clock, frame.agents);
         let last = self.until_secs.map(|until| clock.frame_at(until));

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::fence::Fence;
 use super::{Measure, Observed, Quantity};
+use analysis::evaluated::Evaluated;
 use engine::math::{Vector, are_finite};
 use engine::simulation::Simulation;
 
@@ -74,7 +75,8 @@ impl Measure for Integrity {
         ]
     }
 
-    fn observe(&self, seen: &mut Watched, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Watched, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         seen.observe(simulation);
     }
 

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use super::{About, Mean, Measure, Observed, Quantity, is_due};
 use crate::error::Problem;
 use crate::keys::limits::LONGEST_TIME;
+use analysis::evaluated::Evaluated;
 use engine::simulation::Simulation;
 
 /// The share of the agents, the least dense ones, that count as the rim of a crowd.
@@ -63,7 +64,8 @@ impl Measure for Jitter {
         About::with_density_until(self.until_secs)
     }
 
-    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let frame = simulation.frame();
         let (agents, density) = (frame.agents, &frame.fields.density);
         let mut sorted: Vec<f64> = agents.present().map(|i| density[i]).collect();

@@ -10,6 +10,7 @@ use crate::error::Problem;
 use crate::keys::shapes::{Corners, Point, wide_region};
 use crate::trajectories::Tracks;
 use analysis::crossing::{Balance, Line, Passages};
+use analysis::evaluated::Evaluated;
 use engine::clock::Clock;
 use engine::math::Vector;
 use engine::scene::{Region, Scene};
@@ -147,7 +148,8 @@ impl Measure for LineFlow {
         all
     }
 
-    fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let frame = simulation.frame();
         let agents = frame.agents;
         let arrivals = &simulation.outcome().arrivals;

@@ -7,6 +7,7 @@ use super::running::Running;
 use super::stuck::{self, Stuck};
 use super::{HighestDensity, LongestQueue, Measure, Measurement, Quantity, StuckGroup};
 use crate::error::quote::shown_message;
+use analysis::evaluated::Evaluated;
 use engine::simulation::Simulation;
 
 /// A measured value.
@@ -54,10 +55,11 @@ impl Metrics {
         if self.observed.replace(frame) == Some(frame) {
             return;
         }
+        let evaluated = Evaluated::new(simulation);
         for measurement in &mut self.running {
-            measurement.observe(simulation);
+            measurement.observe(&evaluated);
         }
-        self.stuck.observe(simulation);
+        self.stuck.observe(&evaluated);
         self.overview.observe(&self.stuck.1, simulation);
     }
 

@@ -81,6 +81,7 @@ pub use wave::{Wave, WaveData};
 
 use super::error::{Problem, Under};
 use super::keys::places::journey_named;
+use analysis::evaluated::Evaluated;
 use engine::journeys::Journey;
 use engine::simulation::Simulation;
 use mean::Mean;
@@ -113,7 +114,7 @@ pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
     }
 
     /// Observes an evaluated frame; called in every frame.
-    fn observe(&self, _seen: &mut Self::Seen, _simulation: &Simulation) {}
+    fn observe(&self, _seen: &mut Self::Seen, _evaluated: &Evaluated) {}
 
     /// The values in the order of the quantities; `None` if there were no agents or too few arrivals, or if the run
     /// ended too early.

@@ -9,6 +9,7 @@ use super::{About, Measure, Observed, Quantity};
 use crate::error::Problem;
 use crate::keys::limits::LONGEST_TIME;
 use crate::keys::shapes::{Corners, wide_region};
+use analysis::evaluated::Evaluated;
 use analysis::oscillation::{Oscillation as Analyzed, correlation_lengths, speed};
 use engine::scene::Region;
 use engine::simulation::Simulation;
@@ -192,7 +193,8 @@ impl Measure for Oscillation {
         Quantity::all(self.name(), &values)
     }
 
-    fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let window = self.window();
         let (true, Some(region)) = (window.samples.is_due(simulation), window.region()) else {
             return;

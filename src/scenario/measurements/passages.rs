@@ -28,6 +28,19 @@ pub(super) struct Openings {
 /// points.
 pub(super) type Known = BTreeMap<(u16, [u64; 4]), Vec<Crossing>>;
 
+/// The way of an agent around walls.
+pub(super) struct Way {
+    /// The path map to its end.
+    map: Option<u16>,
+    /// Its points, meters.
+    course: Vec<Vector>,
+    /// The openings before the first of them.
+    first: Vec<Crossing>,
+    /// The distance to the first of them, and the length of the way, meters.
+    distance: f64,
+    pub(super) length: f64,
+}
+
 impl Openings {
     /// Those of a scene with routes: its declared doors, and its narrow places.
     pub(super) fn of(scene: &Scene) -> Self {
@@ -91,34 +104,38 @@ impl Openings {
         self.all.middle(k)
     }
 
-    /// The openings on the way of agent `i` to its aim, in their order, and the length of the way, meters; nothing
-    /// without a way around walls. `known` has those of other agents.
-    pub(super) fn ahead(
-        &self,
-        simulation: &Simulation,
-        (i, aim): (usize, Aim),
-        known: &mut Known,
-    ) -> Option<(Vec<Crossing>, f64)> {
+    /// The way of agent `i` to its aim; `None` without a way around walls.
+    pub(super) fn way(&self, simulation: &Simulation, (i, aim): (usize, Aim)) -> Option<Way> {
         let p = simulation.frame().agents.position[i];
         let routes = simulation.scene().routes.as_ref()?;
         let to = aim.destination()?;
         let course = course(simulation, routes, (i, to));
         let &first = course.first()?;
-        let mut found = self.all.crossed(p, first);
         let distance = (first - p).norm();
-        let length = distance + self::length(&course);
-        if let (Some(second), Some(map)) = (course.get(1), routes.map_to(to)) {
+        Some(Way {
+            map: routes.map_to(to),
+            first: self.all.crossed(p, first),
+            distance,
+            length: distance + self::length(&course),
+            course,
+        })
+    }
+
+    /// The openings on a way, in their order. `known` has those on other ways.
+    pub(super) fn ahead(&self, way: Way, known: &mut Known) -> Vec<Crossing> {
+        let mut found = way.first;
+        if let (&[first, second, ..], Some(map)) = (&way.course[..], way.map) {
             let bits = [first.x, first.y, second.x, second.y].map(f64::to_bits);
             let entry = known.entry((map, bits));
-            let rest = entry.or_insert_with(|| self.along(&course));
+            let rest = entry.or_insert_with(|| self.along(&way.course));
             for &(k, beyond) in &*rest {
                 if found.iter().all(|&(other, _)| other != k) {
-                    found.push((k, distance + beyond));
+                    found.push((k, way.distance + beyond));
                 }
             }
         }
         found.sort_by(|(k, a), (l, b)| a.total_cmp(b).then(l.cmp(k)));
-        Some((found, length))
+        found
     }
 
     /// The openings on a way over these points, each with its distance along it, meters.

@@ -7,6 +7,7 @@ use super::{Measure, Observed, Quantity, is_due};
 use crate::error::Problem;
 use crate::keys::shapes::Point;
 use crate::trajectories::Tracks;
+use analysis::evaluated::Evaluated;
 use analysis::push::Pushed;
 use engine::math::{Vector, direction};
 use engine::scene::Scene;
@@ -146,7 +147,8 @@ impl Measure for Push {
         [of_row, top_speeds, reaches].concat()
     }
 
-    fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         if !is_due(simulation, [0.0, f64::MAX], self.every_secs) {
             return;
         }

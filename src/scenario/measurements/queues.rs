@@ -6,13 +6,14 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::aim::Aim;
 use super::passages::{Crossing, Known, Openings};
 use super::queue_lines::{Lines, Outside};
 use super::standing::{is_slow, length};
-use super::stuck::Headway;
+use super::stuck::{Headway, SOME};
 use crate::error::quote::{shown, to_centimeters};
 use analysis::service;
 use analysis::statistics::Range;
@@ -213,20 +214,22 @@ impl Queues {
 /// The slow agents that have walked for some time.
 fn slow(headways: &[Option<Headway>], simulation: &Simulation, openings: &Openings) -> Vec<Slow> {
     let agents = simulation.frame().agents;
-    let mut known = Known::new();
-    let walking = agents.present().filter_map(|agent| {
+    let slow = (0..agents.len()).into_par_iter().with_min_len(SOME);
+    let slow = slow.filter_map(|agent| {
         let headway = headways.get(agents.id[agent] as usize)?.as_ref()?;
-        let (aim, length) = headway.way().filter(|_| is_slow(simulation, agent))?;
-        let ahead = openings.ahead(simulation, (agent, aim), &mut known);
-        let (ahead, length) = ahead.unwrap_or((Vec::new(), length));
-        Some(Slow {
-            agent,
-            aim,
-            ahead,
-            length,
-        })
+        let (aim, length) = headway.way()?;
+        let is_queuing = agents.is_present(agent) && is_slow(simulation, agent);
+        is_queuing.then(|| (agent, aim, length, openings.way(simulation, (agent, aim))))
     });
-    walking.collect()
+    let slow: Vec<_> = slow.collect();
+    let mut known = Known::new();
+    let all = slow.into_iter().map(|(agent, aim, length, way)| Slow {
+        agent,
+        aim,
+        length: way.as_ref().map_or(length, |way| way.length),
+        ahead: way.map_or(Vec::new(), |way| openings.ahead(way, &mut known)),
+    });
+    all.collect()
 }
 
 /// The slow agents before each passage, the nearest ones first. Queues with a line are passages of their own.

@@ -4,6 +4,7 @@ use serde_json::Value;
 
 use super::{About, Measure, Observed, Quantity};
 use crate::error::Problem;
+use analysis::evaluated::Evaluated;
 use engine::simulation::Simulation;
 
 /// A measurement during a run, whatever it measures: the methods of [`Measure`].
@@ -12,7 +13,7 @@ pub trait Running: Send + Sync {
     fn quantities(&self) -> Vec<Quantity>;
     fn places(&self) -> Vec<(&'static str, Observed)>;
     fn about(&self) -> About;
-    fn observe(&mut self, simulation: &Simulation);
+    fn observe(&mut self, evaluated: &Evaluated);
     fn values(&self, simulation: &Simulation) -> Vec<Option<f64>>;
     fn data(&self) -> Option<(String, Value)>;
     fn seen(&self) -> Value;
@@ -42,8 +43,8 @@ impl<M: Measure> Running for (M, M::Seen) {
         self.0.about()
     }
 
-    fn observe(&mut self, simulation: &Simulation) {
-        self.0.observe(&mut self.1, simulation);
+    fn observe(&mut self, evaluated: &Evaluated) {
+        self.0.observe(&mut self.1, evaluated);
     }
 
     fn values(&self, simulation: &Simulation) -> Vec<Option<f64>> {

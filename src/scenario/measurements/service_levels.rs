@@ -6,6 +6,7 @@ use serde::Deserialize;
 use super::window::Window;
 use super::{About, Measure, Observed, Quantity};
 use crate::error::Problem;
+use analysis::evaluated::Evaluated;
 use analysis::service::{LEVELS, Levels};
 use engine::simulation::Simulation;
 
@@ -55,10 +56,11 @@ impl Measure for ServiceLevels {
         quantities.collect()
     }
 
-    fn observe(&self, seen: &mut Levels, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Levels, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let window = self.window;
         if window.samples.is_due(simulation) {
-            seen.add(window.people(simulation, false).iter());
+            seen.add(window.people(evaluated, false));
         }
     }
 

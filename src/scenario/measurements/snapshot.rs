@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::{About, Measure, Observed};
 use crate::keys::limits::LONGEST_TIME;
+use analysis::evaluated::Evaluated;
 use engine::simulation::Simulation;
 
 /// All agents at one time: positions, radii, speeds and densities.
@@ -70,7 +71,8 @@ impl Measure for SnapshotAt {
         About::with_density_until(self.at_secs)
     }
 
-    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let clock = simulation.frame().clock;
         if clock.frame() == clock.frame_at(self.at_secs) {
             *seen = Some(Snapshot::of(simulation));

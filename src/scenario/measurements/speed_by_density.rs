@@ -6,6 +6,7 @@ use serde::Deserialize;
 use super::{About, Mean, Measure, Observed, Quantity, is_due};
 use crate::error::Problem;
 use crate::keys::limits::LONGEST_TIME;
+use analysis::evaluated::Evaluated;
 use engine::simulation::Simulation;
 
 /// The mean speed of agents with ρ_i in bins 1 P/m² wide, m/s, between two times.
@@ -55,7 +56,8 @@ impl Measure for SpeedByDensity {
         About::with_density_until(self.until_secs)
     }
 
-    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let frame = simulation.frame();
         let is_early = frame.clock.frame() < frame.clock.frame_at(self.from_secs);
         // Counted from the start of the run.

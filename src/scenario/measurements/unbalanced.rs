@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::window::Window;
 use super::{Measure, Observed, Quantity};
 use crate::error::Problem;
+use analysis::evaluated::Evaluated;
 use engine::forces::legs::{self, Legs};
 use engine::math::Vector;
 use engine::simulation::Simulation;
@@ -79,7 +80,8 @@ impl Measure for Unbalanced {
         Quantity::all(self.name.as_deref().unwrap_or(NAME), &values)
     }
 
-    fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         if !self.window.samples.is_due(simulation) {
             return;
         }

@@ -9,6 +9,7 @@ use super::{Measure, Observed, Quantity};
 use crate::error::Problem;
 use crate::keys::limits::LONGEST_TIME;
 use crate::keys::shapes::{Corners, wide_region};
+use analysis::evaluated::Evaluated;
 use engine::math::Vector;
 use engine::scene::{Region, Scene};
 use engine::simulation::Simulation;
@@ -122,7 +123,8 @@ impl Measure for Walks {
         Quantity::all(self.name(), &values)
     }
 
-    fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         let (scene, frame) = (simulation.scene(), simulation.frame());
         let (clock, agents) = (frame.clock, frame.agents);
         let (now, step) = (clock.time(), clock.time_step());
@@ -147,11 +149,10 @@ impl Measure for Walks {
                 };
                 (walk, position)
             });
-            let is_walking = agents.velocity[i].norm() >= STARTED * walk.preferred_speed;
-            match walk.started_secs {
-                None => walk.started_secs = is_walking.then_some(now),
-                Some(since) if now - since < KEPT && !is_walking => walk.started_secs = None,
-                Some(_) => {}
+            let since = walk.started_secs;
+            if since.is_none_or(|since| now - since < KEPT) {
+                let is_walking = agents.velocity[i].norm() >= STARTED * walk.preferred_speed;
+                walk.started_secs = is_walking.then(|| since.unwrap_or(now));
             }
             if is_due && region.is_none_or(|region| region.contains(position)) {
                 walk.secs += step;

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::window::{MOST_MASS, Samples, body_mass};
 use super::{About, Measure, Observed, Quantity};
 use crate::error::Problem;
+use analysis::evaluated::Evaluated;
 use analysis::wall_forces::{CellForce, WallForces as Seen};
 use engine::simulation::Simulation;
 
@@ -82,10 +83,11 @@ impl Measure for WallForces {
         Quantity::all(self.name(), &values)
     }
 
-    fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, (seen, secs): &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         if self.samples.is_due(simulation) {
             *secs = self.samples.secs(simulation);
-            seen.add(simulation, self.body_mass_kg);
+            seen.add(evaluated, self.body_mass_kg);
         }
     }
 

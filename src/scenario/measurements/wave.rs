@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::{Measure, Observed, Quantity, is_due};
 use crate::error::Problem;
 use crate::keys::limits::LONGEST_TIME;
+use analysis::evaluated::Evaluated;
 use analysis::wave::{self, Run, SpaceTime, Strip};
 use engine::simulation::Simulation;
 
@@ -116,7 +117,8 @@ impl Measure for Wave {
         ]
     }
 
-    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         if is_due(
             simulation,
             [self.from_secs, self.until_secs],

@@ -9,7 +9,8 @@ use crate::floor_plan::parts_on_floor;
 use crate::keys::limits::LONGEST_TIME;
 use crate::keys::shapes::{Corners, wide_region};
 use analysis::body_forces::BODY_MASS;
-use analysis::local::{Local, local};
+use analysis::evaluated::Evaluated;
+use analysis::local::Local;
 use engine::geometry::{Area, Ring};
 use engine::scene::{Region, Scene};
 use engine::simulation::Simulation;
@@ -117,10 +118,13 @@ impl Window {
     }
 
     /// The agents in the region with what is around them, with pressures if `pressure`.
-    pub fn people(&self, simulation: &Simulation, pressure: bool) -> Vec<Local> {
+    pub fn people<'a>(
+        &self,
+        evaluated: &'a Evaluated,
+        pressure: bool,
+    ) -> impl Iterator<Item = &'a Local> {
         let region = self.region();
-        let mut people = local(simulation, pressure);
-        people.retain(|person| region.is_none_or(|region| region.contains(person.position)));
-        people
+        let people = evaluated.people(pressure).iter();
+        people.filter(move |person| region.is_none_or(|region| region.contains(person.position)))
     }
 }

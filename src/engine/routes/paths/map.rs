@@ -105,18 +105,42 @@ impl PathMap {
         Ok(map)
     }
 
+    /// The map of one or more goals as in [`new`](Self::new), for few positions: building it takes a small part of the
+    /// time, and looking up a way takes longer.
+    ///
+    /// # Errors
+    /// A goal is not on the floor.
+    pub fn for_few(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
+        let mut map = Self::built(floor, goals, margin, |targets, entries| {
+            Parts::undivided(floor, targets, entries.of_triangles())
+        })?;
+        map.find_routes_out(floor);
+        Ok(map)
+    }
+
     /// The map of one or more goals as in [`new`](Self::new), without routes through closed passages.
     ///
     /// # Errors
     /// A goal is not on the floor.
     pub fn within(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
+        Self::built(floor, goals, margin, |targets, entries| {
+            Parts::new(floor, targets, entries.of_triangles())
+        })
+    }
+
+    fn built(
+        floor: &Floor,
+        goals: &[Goal],
+        margin: f64,
+        divide: impl FnOnce(&Targets, Entries) -> Parts,
+    ) -> Result<Self, WayError> {
         let mut seen = Seen::new(floor, goals, margin)?;
         spread(floor, &mut seen.targets);
         let Seen { mut targets, views } = seen;
         targets.find_beyond(floor);
         let entries = Entries::new(floor, &targets, views);
         let building = entries.bytes();
-        let parts = Parts::new(floor, &targets, entries.of_triangles());
+        let parts = divide(&targets, entries);
         Ok(Self {
             targets,
             parts,

@@ -93,11 +93,8 @@ impl Parts {
         targets: &Targets,
         mut found: impl Iterator<Item = Vec<Entry>>,
     ) -> Self {
-        let count = floor.mesh.triangles().len();
-        let mut all = Self {
-            parts: vec![NONE; count],
-            entries: Lists::new(targets.len(), floor.borders() + targets.borders.len()),
-        };
+        let mut all = Self::empty(floor, targets);
+        let count = all.parts.len();
         for from in (0..count).step_by(CHUNK) {
             let some: Vec<Vec<Entry>> = found.by_ref().take(CHUNK).collect();
             let some = some.into_par_iter().enumerate().map(|(k, entries)| {
@@ -107,7 +104,7 @@ impl Parts {
                 Part::new(&candidates, floor.mesh.corners((from + k) as u32), 0)
             });
             for (k, part) in some.collect::<Vec<_>>().into_iter().enumerate() {
-                all.add(from + k, part);
+                all.add_part(from + k, part);
             }
         }
         all.parts.shrink_to_fit();
@@ -115,17 +112,44 @@ impl Parts {
         all
     }
 
-    fn add(&mut self, number: usize, part: Part) {
+    /// The whole triangles with all entries that are `found` for each, in order.
+    pub fn undivided(
+        floor: &Floor,
+        targets: &Targets,
+        found: impl Iterator<Item = Vec<Entry>>,
+    ) -> Self {
+        let mut all = Self::empty(floor, targets);
+        for (number, entries) in found.enumerate() {
+            all.add(number, &entries);
+        }
+        all
+    }
+
+    fn empty(floor: &Floor, targets: &Targets) -> Self {
+        Self {
+            parts: vec![NONE; floor.mesh.triangles().len()],
+            entries: Lists::new(targets.len(), floor.borders() + targets.borders.len()),
+        }
+    }
+
+    fn add_part(&mut self, number: usize, part: Part) {
         if let Some(halves) = part.halves {
             let first = self.parts.len();
             self.parts.extend([NONE; 2]);
             self.parts[number] = HALVED | first as u32;
             for (k, half) in halves.into_iter().enumerate() {
-                self.add(first + k, half);
+                self.add_part(first + k, half);
             }
-        } else if !part.entries.is_empty() {
+        } else {
+            self.add(number, &part.entries);
+        }
+    }
+
+    /// Adds the entries of a part that is not halved.
+    fn add(&mut self, number: usize, entries: &[Entry]) {
+        if !entries.is_empty() {
             self.parts[number] = self.entries.len() as u32;
-            self.entries.add(&part.entries);
+            self.entries.add(entries);
         }
     }
 

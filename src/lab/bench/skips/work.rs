@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::Undone;
 use crate::bench::timing::{failed, ms_of, warmed};
 use crate::error::LabError;
+use analysis::evaluated::Evaluated;
 use engine::forces::rvo::{Preference, Scratch};
 use engine::forces::walking::{Decided, Deciders, Headway, WalkingLaw};
 use engine::geometry::{Area, Ring};
@@ -207,7 +208,7 @@ pub fn walking_law(simulation: &Simulation) -> Result<Work, &'static str> {
 /// The measurement of integrity.
 pub fn integrity() -> Work {
     let (keys, mut seen) = (Integrity {}, Watched::default());
-    Box::new(move |simulation| seconds(|| keys.observe(&mut seen, simulation)))
+    Box::new(move |simulation| seconds(|| keys.observe(&mut seen, &Evaluated::new(simulation))))
 }
 
 /// The most goals with a path map.

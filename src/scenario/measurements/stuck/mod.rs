@@ -2,11 +2,13 @@
 
 mod cause;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::aim::Aim;
 use super::passages::Openings;
 use super::{Measure, Observed, is_due};
+use analysis::evaluated::Evaluated;
 use engine::journeys::Status;
 use engine::math::Vector;
 use engine::routes::Destination;
@@ -24,6 +26,8 @@ const EVERY: f64 = 1.0;
 const KEPT: usize = 20;
 /// An agent has started after this number of observations.
 const STARTED: u32 = 3;
+/// The fewest agents that a thread observes.
+pub(super) const SOME: usize = 64;
 /// Headways are kept as whole parts of the headway that is needed: this many. Results do not depend on rounding.
 const PARTS: f64 = 1e6;
 
@@ -74,7 +78,8 @@ impl Measure for Stuck {
         Vec::new()
     }
 
-    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+    fn observe(&self, seen: &mut Self::Seen, evaluated: &Evaluated) {
+        let simulation = evaluated.simulation;
         if is_due(simulation, [0.0, f64::INFINITY], EVERY) {
             watch(seen, simulation);
         }
@@ -125,16 +130,24 @@ fn watch(seen: &mut Vec<Option<Headway>>, simulation: &Simulation) {
     if !groups.iter().any(can_be_stuck) {
         return;
     }
-    let before = std::mem::take(seen);
-    seen.resize(agents.entered() as usize, None);
-    for i in 0..agents.len() {
-        let id = agents.id[i] as usize;
-        let before = before.get(id).copied().flatten();
-        seen[id] = aim(simulation, i).map(|aim| match before {
-            Some(before) => before.next(simulation, i, aim),
-            None => Headway::begin(simulation, position(simulation, i), aim),
-        });
+    let mut index = vec![None; agents.entered() as usize];
+    for (i, &id) in agents.id.iter().enumerate() {
+        index[id as usize] = Some(i as u32);
     }
+    seen.resize(index.len(), None);
+    let all = seen.par_iter_mut().zip(index).with_min_len(SOME);
+    all.for_each(|(seen, index)| {
+        let index = index.map(|i| i as usize);
+        let walking = index.and_then(|i| Some((i, aim(simulation, i)?)));
+        match (walking, &mut *seen) {
+            (Some((i, aim)), Some(before)) => before.follow(simulation, i, aim),
+            (Some((i, aim)), None) => {
+                let begun = Headway::begin(simulation, position(simulation, i), aim);
+                *seen = Some(begun);
+            }
+            (None, _) => *seen = None,
+        }
+    });
 }
 
 impl Headway {
@@ -159,8 +172,8 @@ impl Headway {
         }
     }
 
-    /// The headway of agent `i`, which now walks to `aim`, one observation later.
-    fn next(mut self, simulation: &Simulation, i: usize, aim: Aim) -> Self {
+    /// Becomes the headway of agent `i`, which now walks to `aim`, one observation later.
+    fn follow(&mut self, simulation: &Simulation, i: usize, aim: Aim) {
         let frame = simulation.frame();
         let (here, now) = (position(simulation, i), frame.clock.time());
         // The headway on the way that it walks now, also if it has chosen that just now.
@@ -184,7 +197,6 @@ impl Headway {
         let all: i64 = self.made.iter().map(|&made| i64::from(made)).sum();
         let is_short = self.count as usize >= KEPT && all < PARTS as i64;
         self.since = is_short.then(|| self.since.unwrap_or(now - STUCK_AFTER));
-        self
     }
 }
 
