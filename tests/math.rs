@@ -2,7 +2,7 @@
 
 use sandbox::engine::math::{Vector, are_finite, unit_vector};
 use sandbox::engine::pairs::prelude::*;
-use sandbox::engine::pairs::{Level, Real, dispatch, f32x8};
+use sandbox::engine::pairs::{Real, dispatch, f32x8, level};
 
 #[test]
 fn unit_vectors_are_the_cosines_and_sines_of_their_turns() {
@@ -37,13 +37,13 @@ fn one_number_that_is_none_is_seen_among_many() {
 fn powers_of_two_are_right_to_the_last_bits() {
     for k in 0..100_000 {
         let x = -1e-3 * f64::from(k) as f32;
-        let power = dispatch!(Level::new(), simd => {
+        let power = dispatch!(level(), simd => {
             <f32 as Real>::exp2(simd, f32x8::splat(simd, x))[3]
         });
         let exact = f64::from(x).exp2();
         assert!((f64::from(power) / exact - 1.0).abs() < 3e-7, "{x}");
     }
-    let far = dispatch!(Level::new(), simd => {
+    let far = dispatch!(level(), simd => {
         <f32 as Real>::exp2(simd, f32x8::splat(simd, -1e9))[0]
     });
     assert!((0.0..=f32::MIN_POSITIVE).contains(&far));

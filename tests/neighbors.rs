@@ -98,7 +98,7 @@ fn no_neighbor_is_missed_until_the_lists_are_stale() {
         for i in 0..agents.len() {
             let r_i = agents.position[i];
             let around: Vec<usize> = neighbors
-                .around(r_i, 5.0)
+                .around(i, &agents.position, 5.0)
                 .flat_map(|run| run.indices())
                 .collect();
             let near = near(&neighbors, i);
@@ -221,6 +221,7 @@ fn lists_that_follow_a_crowd_miss_nobody_however_it_moves() {
             drift: FOLLOWED,
             margin: 0.5 * SKIN,
             follow: true,
+            wide: (round % 2 == 0).then_some(3.0),
             ..Ranges::default()
         };
         neighbors.sort(&mut agents, ranges);
@@ -243,17 +244,31 @@ fn lists_that_follow_a_crowd_miss_nobody_however_it_moves() {
         late += usize::from(moved.fold(0.0, f64::max) > 0.5 * SKIN);
         for i in 0..agents.len() {
             let found = near(&neighbors, i);
-            // Also in the cells, where causes of standstills are looked for.
-            let runs = neighbors.around(agents.position[i], 3.0);
+            // Also in the cells, where social forces, walking laws and causes of standstills look for others.
+            let (p, positions) = (agents.position[i], &agents.position);
+            let runs = neighbors.around(i, positions, 3.0);
             let around: Vec<usize> = runs.flat_map(|run| run.indices()).collect();
+            let (mut inside, mut of_cluster) = (Vec::new(), Vec::new());
+            let corner = vector(2.0, 2.0);
+            neighbors.inside(i..i + 1, [p - corner, p + corner], positions, &mut inside);
+            neighbors.around_cluster(i..i + 1, positions, 3.0, &mut of_cluster);
+            let has = |runs: &[Run], j: usize| runs.iter().any(|run| run.indices().contains(&j));
             for j in 0..agents.len() {
                 let distance = (agents.position[i] - agents.position[j]).norm();
                 assert!(
                     distance >= 1.0 || found.contains(&j),
                     "round {round}: {i} {j}"
                 );
+                if i % 37 > 0 || distance >= 3.0 {
+                    continue;
+                }
                 assert!(
-                    i % 37 > 0 || distance >= 3.0 || around.contains(&j),
+                    around.contains(&j) && has(&of_cluster, j),
+                    "round {round}: {i} {j}"
+                );
+                let offset = (agents.position[j] - p).abs();
+                assert!(
+                    offset.max() > 2.0 || round % 2 > 0 || has(&inside, j),
                     "round {round}: {i} {j}"
                 );
             }

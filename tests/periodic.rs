@@ -156,7 +156,7 @@ fn lists_hold_all_agents_across_the_ends() {
                 let all = || (0..agents.len()).flat_map(|j| [-1, 0, 1].map(|laps| (j, laps)));
                 let listed = near(&mut neighbors.near().near(i), 1.0 + SKIN);
                 assert_eq!(listed, near(&mut all(), 1.0 + SKIN));
-                let runs = neighbors.around(r_i, 1.5);
+                let runs = neighbors.around(i, &agents.position, 1.5);
                 let seen = runs.flat_map(|run| run.indices().map(move |j| (j, run.laps)));
                 assert_eq!(near(&mut { seen }, 1.5), near(&mut all(), 1.5));
             }

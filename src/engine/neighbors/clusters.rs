@@ -159,7 +159,7 @@ impl ClusterBlock {
         reach: f64,
     ) {
         for i in agents {
-            grid.each_near(positions[i], positions, [reach, 0.0], &mut self.runs);
+            grid.each_near([positions[i]; 2], positions, [reach, 0.0], &mut self.runs);
             self.close(i..i + 1);
         }
     }

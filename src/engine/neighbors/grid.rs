@@ -263,16 +263,16 @@ impl Grid {
         before.min() >= 0.0 && after.max() <= 0.0
     }
 
-    /// Appends the agents nearer to `p` than `radius` meters, each as a run of its own. They have moved by less than
-    /// `margin` meters since the grid was laid.
+    /// Appends the agents nearer to `p` than `radius` meters, each as a run of its own. When the grid was laid, they were
+    /// less than `margin` meters farther from `place`.
     pub fn each_near(
         &self,
-        p: Vector,
+        [place, p]: [Vector; 2],
         positions: &[Vector],
         [radius, margin]: [f64; 2],
         found: &mut Vec<Run>,
     ) {
-        for Run { agents, laps } in self.rows([p; 2], radius + margin) {
+        for Run { agents, laps } in self.rows([place; 2], radius + margin) {
             let p = self.seen_from(p, laps);
             let near = agents.filter(|&j| (p - positions[j as usize]).norm() < radius);
             found.extend(near.map(|j| Run {

@@ -231,17 +231,19 @@ impl Neighbors {
         positions: &[Vector],
         radius: f64,
     ) -> impl Iterator<Item = Run> + '_ {
-        let (places, margin) = self.places(positions);
+        let (places, margin) = self.places(positions, radius);
         self.grid.rows([places[i]; 2], radius + margin)
     }
 
-    /// The places from which the agents look for others in the grid, and how much farther than others are, meters:
-    /// their `positions`, from which others are as far as they have moved since the sort; or, if lists follow the
-    /// crowd, their positions at the sort, since when agents near each other have moved alike.
-    fn places<'a>(&'a self, positions: &'a [Vector]) -> (&'a [Vector], f64) {
-        match self.ranges.follow {
-            true => (&self.sorted_at, 2.0 * self.ranges.margin),
-            false => (positions, self.ranges.margin),
+    /// The places from which agents look for others within `radius` meters in the grid, and how much farther they look,
+    /// meters: from their `positions`, as far as the others may have moved since the sort; or, if lists follow the
+    /// crowd and no sum reads agents farther away, from their positions at the sort, since when both have moved alike.
+    fn places<'a>(&'a self, positions: &'a [Vector], radius: f64) -> (&'a [Vector], f64) {
+        let moves_alike = self.ranges.follow && radius <= self.ranges.farthest(self.reach);
+        match self.ranges {
+            Ranges { margin, .. } if moves_alike => (&self.sorted_at, 2.0 * margin),
+            Ranges { drift, .. } if self.ranges.follow => (positions, drift),
+            Ranges { margin, .. } => (positions, margin),
         }
     }
 
@@ -260,7 +262,7 @@ impl Neighbors {
         found: &mut Vec<Run>,
     ) {
         found.clear();
-        let (places, margin) = self.places(positions);
+        let (places, margin) = self.places(positions, radius);
         if self.grid.height() <= self.reach {
             let corners = bounds(places[agents].iter().copied()).unwrap_or_default();
             found.extend(self.grid.rows(corners, radius + margin));
@@ -268,12 +270,9 @@ impl Neighbors {
         }
         // Cells had to be made larger than the reach of the lists, so clusters have one agent: list only its
         // neighbors.
-        let reach = match self.ranges.follow {
-            true => [radius + margin, 0.0],
-            false => [radius, margin],
-        };
         for i in agents {
-            self.grid.each_near(places[i], places, reach, found);
+            let at = [places[i], positions[i]];
+            self.grid.each_near(at, positions, [radius, margin], found);
         }
     }
 
@@ -287,7 +286,7 @@ impl Neighbors {
         found: &mut Vec<Run>,
     ) {
         found.clear();
-        let (places, margin) = self.places(positions);
+        let (places, margin) = self.places(positions, 0.0);
         let margin = Vector::repeat(margin);
         let shifts = agents.map(|i| positions[i] - places[i]);
         let [least, most] = bounds(shifts).unwrap_or_default();
