@@ -21,7 +21,7 @@ use crate::geometry::{Polygon, Walls};
 use crate::journeys::Journeys;
 use crate::math::Vector;
 pub use crate::neighbors::ListPolicy;
-use crate::neighbors::{FOLLOWED, MANY, Ranges, SKIN};
+use crate::neighbors::{FOLLOWED, MANY, Ranges, SKIN, WIDEST, WIDEST_SOCIAL};
 pub use crate::pairs::Precision;
 use crate::period::Period;
 use crate::placement::Grid;
@@ -394,6 +394,7 @@ impl Scene {
                 let radii = social.map(|social| social.avoidance_radius).chain(laws);
                 radii.fold(0.0, f64::max)
             }),
+            widest_cluster: if needs.social { WIDEST_SOCIAL } else { WIDEST },
             longest_step,
             drift,
             margin,

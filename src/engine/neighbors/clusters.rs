@@ -17,7 +17,10 @@ pub const TASK: usize = 8;
 pub const CLUSTER: usize = 8;
 
 /// The greatest width of a cluster, in units of the lists' reach: in a sparse crowd clusters have fewer agents.
-const WIDEST: f64 = 3.0;
+pub const WIDEST: f64 = 3.0;
+
+/// That of clusters for social forces, whose directions have the more rounding the wider clusters are.
+pub const WIDEST_SOCIAL: f64 = 2.0;
 
 /// Half the period of coordinates that may wrap, in units of the lists' reach.
 const EXTENT: f64 = 4.5;
@@ -25,7 +28,10 @@ const EXTENT: f64 = 4.5;
 /// All agents in clusters of at most [`CLUSTER`] agents, in blocks of [`BLOCK`] agents.
 #[derive(Debug, Clone, Default)]
 pub struct Clusters {
+    /// They keep their memory between rebuilds: allocated by several threads at every sort, it took longer than the
+    /// lists.
     blocks: Vec<ClusterBlock>,
+    is_listed: bool,
 }
 
 /// The clusters of one block of consecutive agents.
@@ -52,9 +58,10 @@ impl Clusters {
     }
 
     /// For each cluster, lists all agents within `reach` meters of any of its members, and some that are farther away,
-    /// as runs of agents. `grid` must have been laid over `positions`.
-    pub fn rebuild(&mut self, grid: &Grid, positions: &[Vector], reach: f64) {
+    /// as runs of agents. No cluster is wider than `widest` times the reach. `grid` must have been laid over `positions`.
+    pub fn rebuild(&mut self, grid: &Grid, positions: &[Vector], [reach, widest]: [f64; 2]) {
         let count = positions.len();
+        self.is_listed = true;
         self.blocks
             .resize_with(count.div_ceil(BLOCK), ClusterBlock::default);
         self.blocks
@@ -68,19 +75,19 @@ impl Clusters {
                 if grid.height() > reach {
                     block.list_one_by_one(grid, positions, agents, reach);
                 } else {
-                    block.list_together(grid, positions, agents, reach);
+                    block.list_together(grid, positions, agents, [reach, widest]);
                 }
             });
     }
 
     /// Whether there are no lists.
     pub fn is_empty(&self) -> bool {
-        self.blocks.is_empty()
+        !self.is_listed || self.blocks.is_empty()
     }
 
     /// Drops all lists.
     pub fn clear(&mut self) {
-        self.blocks.clear();
+        self.is_listed = false;
     }
 
     /// The clusters of block `b`, which begins with agent `b` × [`BLOCK`]; none after [`clear`](Self::clear).
@@ -89,7 +96,8 @@ impl Clusters {
             clusters: Vec::new(),
             runs: Vec::new(),
         };
-        self.blocks.get(b).unwrap_or(NOBODY)
+        let listed = self.blocks.get(b).filter(|_| self.is_listed);
+        listed.unwrap_or(NOBODY)
     }
 
     /// All agents in the list of agent `i`, including itself, in ascending order, then those across the ends of the
@@ -119,7 +127,7 @@ impl ClusterBlock {
         grid: &Grid,
         positions: &[Vector],
         agents: Range<usize>,
-        reach: f64,
+        [reach, widest]: [f64; 2],
     ) {
         let half_curvature = 0.5 / reach;
         let mut start = agents.start;
@@ -129,7 +137,7 @@ impl ClusterBlock {
             let mut end = start;
             while end < agents.end.min(start + CLUSTER) {
                 let place = grid.place(positions[end]);
-                if place.row != first.row || (place.x - first.x).abs() > WIDEST * reach {
+                if place.row != first.row || (place.x - first.x).abs() > widest * reach {
                     break;
                 }
                 extent.include(place.x, place.y, grid.height(), (reach, half_curvature));
@@ -187,8 +195,8 @@ impl Default for Extent {
 }
 
 impl Extent {
-    /// Extends the intervals by a circle of radius `reach` meters, half of whose curvature is `half_curvature`, around a
-    /// place `x` along the row and `y` above its lower edge.
+    /// Extends the intervals by a circle of radius `reach` meters around a place `x` along the row and `y` above its
+    /// lower edge; `half_curvature` is that of the circle.
     #[inline(always)]
     fn include(&mut self, x: f64, y: f64, height: f64, (reach, half_curvature): (f64, f64)) {
         for (row, gap) in self.rows.iter_mut().zip([y, 0.0, height - y]) {

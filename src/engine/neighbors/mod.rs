@@ -13,7 +13,7 @@ mod run;
 mod shifts;
 mod wall_cells;
 
-pub use clusters::{BLOCK, CLUSTER, ClusterBlock, Clusters, TASK};
+pub use clusters::{BLOCK, CLUSTER, ClusterBlock, Clusters, TASK, WIDEST, WIDEST_SOCIAL};
 pub use grid::{Grid, Place};
 pub use lists::Lists;
 pub use run::Run;
@@ -54,7 +54,7 @@ pub enum ListPolicy {
 }
 
 /// The ranges of the neighbor search. Ranges that no profile needs are `None` and cost nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ranges {
     /// Support radius h of SPH, meters.
     pub support: f64,
@@ -65,6 +65,8 @@ pub struct Ranges {
     /// Radius of the sums over agents that do not read the lists of near agents, meters: social forces and walking
     /// laws.
     pub wide: Option<f64>,
+    /// The greatest width of a cluster, in units of the lists' reach: at most [`WIDEST`].
+    pub widest_cluster: f64,
     /// The longest step of any agent in a frame, s_max Δt, meters.
     pub longest_step: f64,
     /// The distance that any agent may move between sorts without missing a wall, meters.
@@ -77,6 +79,23 @@ pub struct Ranges {
     pub follow: bool,
     /// Agents are also neighbors across the ends of this period, in which all of them are at the sort.
     pub period: Option<Period>,
+}
+
+impl Default for Ranges {
+    fn default() -> Self {
+        Self {
+            support: 0.0,
+            avoidance: None,
+            sight: None,
+            wide: None,
+            widest_cluster: WIDEST,
+            longest_step: 0.0,
+            drift: 0.0,
+            margin: 0.0,
+            follow: false,
+            period: None,
+        }
+    }
 }
 
 impl Ranges {
@@ -147,7 +166,8 @@ impl Neighbors {
     /// positions at the sort, so that they do not depend on when they are first needed: requesting a density must not
     /// change the order of any sum, which would change the motion by rounding.
     pub fn list_agents(&mut self) {
-        self.near.rebuild(&self.grid, &self.sorted_at, self.reach);
+        let sizes = [self.reach, self.ranges.widest_cluster];
+        self.near.rebuild(&self.grid, &self.sorted_at, sizes);
     }
 
     /// Lists the walls near each agent: near walls for SPH, contact and stopping moves, far walls for avoidance.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::real::{LANES, Real};
 use super::{dispatch, level};
 use crate::agents::Agents;
-use crate::math::{Vector, direction};
+use crate::math::Vector;
 use crate::neighbors::{BLOCK, TASK};
 use crate::period::Period;
 
@@ -120,11 +120,17 @@ impl<R: Real> Bodies<R> {
         let padded = wishes.len() + LANES;
         self.heading_x.resize(padded, R::default());
         self.heading_y.resize(padded, R::default());
-        let headings = self.heading_x.iter_mut().zip(&mut self.heading_y);
-        for ((x, y), &wish) in headings.zip(wishes) {
-            let heading = direction(wish);
-            (*x, *y) = (R::of(heading.x), R::of(heading.y));
-        }
+        let blocks = (
+            self.heading_x.par_chunks_mut(BLOCK),
+            self.heading_y.par_chunks_mut(BLOCK),
+            wishes.par_chunks(BLOCK),
+        );
+        blocks
+            .into_par_iter()
+            .with_min_len(TASK)
+            .for_each(|(x, y, wishes)| {
+                dispatch!(level(), _simd => directions(wishes, [x, y]));
+            });
     }
 
     /// Packs the positions and velocities of all agents.
@@ -148,5 +154,15 @@ impl<R: Real> Bodies<R> {
                 });
             },
         );
+    }
+}
+
+/// The directions of some wishes; zero for those that are zero. Without branches.
+#[inline(always)]
+fn directions<R: Real>(wishes: &[Vector], [x, y]: [&mut [R]; 2]) {
+    for ((x, y), wish) in x.iter_mut().zip(y).zip(wishes) {
+        let length = wish.norm();
+        let along = |part: f64| R::of(if length > 0.0 { part / length } else { 0.0 });
+        (*x, *y) = (along(wish.x), along(wish.y));
     }
 }

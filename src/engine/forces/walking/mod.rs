@@ -24,7 +24,6 @@ pub use headings::Headings;
 pub use headway::Headway;
 
 use libm::hypot;
-use std::f64::consts::FRAC_1_SQRT_2;
 use std::ops::Range;
 
 use headings::{COUNT, STRAIGHT};
@@ -241,9 +240,13 @@ fn allowed_shares(wishes: &[Vector], allowed: &[Option<f64>], shares: &mut [f64]
 }
 
 /// Whether some agents with these preferred velocities may want to walk against others: the directions of all are not
-/// within an eighth of a turn from their mean.
+/// within an eighth of a turn from that of their sum.
 pub fn some_meet(wishes: &[Vector]) -> bool {
-    let mean = direction(wishes.iter().map(|&wish| direction(wish)).sum());
-    let strays = |wish: &Vector| wish.dot(&mean) < FRAC_1_SQRT_2 * wish.norm();
+    let mean = direction(wishes.iter().sum());
+    // Without roots: there are many wishes.
+    let strays = |wish: &Vector| {
+        let along = wish.dot(&mean);
+        along < 0.0 || along * along < 0.5 * wish.norm_squared()
+    };
     wishes.iter().any(strays)
 }

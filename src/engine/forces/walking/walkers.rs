@@ -120,7 +120,8 @@ impl<R: Real, S: Simd> Walkers<R, S> {
         }
     }
 
-    /// Sets `runs` to the agents in this view, and some out of it.
+    /// Sets `runs` to the agents in this view, and some out of it, nearest rows first: the nearer the first, the fewer
+    /// of the others count.
     #[inline(always)]
     pub fn look(
         &self,
@@ -134,6 +135,11 @@ impl<R: Real, S: Simd> Walkers<R, S> {
         let area = way.map(|way| positions[self.start] + way);
         let agents = self.start..self.start + self.count;
         frame.neighbors.inside(agents, area, positions, runs);
+        let own = self.start as u32;
+        runs.sort_unstable_by_key(|run| {
+            let before = own.saturating_sub(run.agents.end);
+            before.max(run.agents.start.saturating_sub(own))
+        });
     }
 
     /// The lower left and the upper right corner of a rectangle with all places that they look at, meters from the
