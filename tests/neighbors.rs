@@ -32,6 +32,7 @@ fn listed(agents: &mut Agents) -> Neighbors {
         margin: 0.5 * SKIN,
         follow: false,
         period: None,
+        ..Ranges::default()
     };
     neighbors.sort(agents, ranges);
     neighbors.list_agents();

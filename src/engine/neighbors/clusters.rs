@@ -58,7 +58,8 @@ impl Clusters {
     }
 
     /// For each cluster, lists all agents within `reach` meters of any of its members, and some that are farther away,
-    /// as runs of agents. No cluster is wider than `widest` times the reach. `grid` must have been laid over `positions`.
+    /// as runs of agents. No cluster is wider than `widest` times the reach. `grid` must have been laid over the
+    /// `positions`.
     pub fn rebuild(&mut self, grid: &Grid, positions: &[Vector], [reach, widest]: [f64; 2]) {
         let count = positions.len();
         self.is_listed = true;
