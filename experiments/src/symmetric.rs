@@ -14,7 +14,7 @@ use sandbox::engine::density::from_agents;
 use sandbox::engine::neighbors::{BLOCK, Neighbors, Run};
 use sandbox::engine::pairs::prelude::*;
 use sandbox::engine::pairs::{
-    Bodies, Lanes, Level, Packed, PairSum, Simd, add_pairs, dispatch, load, splat, spread, store,
+    Bodies, Lanes, Packed, PairSum, Simd, add_pairs, dispatch, level, load, splat, spread, store,
 };
 use sandbox::lab::bench::{Benchmark, Crowd, Plan, Timings};
 use sandbox::lab::error::LabError;
@@ -194,7 +194,7 @@ fn symmetric(
     received: &mut [f32],
     out: &mut [f64],
 ) {
-    dispatch!(Level::new(), simd => sums(simd, bodies, clusters, received, out));
+    dispatch!(level(), simd => sums(simd, bodies, clusters, received, out));
 }
 
 #[inline(always)]
