@@ -92,7 +92,8 @@ impl Grid {
         cell_of.clear();
         let cells = positions.par_iter().with_min_len(SOME);
         cell_of.par_extend(cells.map(|&p| self.cell_of(p) as u32));
-        // Entry c + 2 counts the agents of cell c; from the sums on, entry c + 1 is where the next agent of cell c goes.
+        // Entry c + 2 counts the agents of cell c; from the sums on, entry c + 1 is where the next agent of cell c
+        // goes.
         let cells = self.cells();
         self.start.clear();
         self.start.resize(cells + 2, 0);
