@@ -264,8 +264,8 @@ impl Grid {
         before.min() >= 0.0 && after.max() <= 0.0
     }
 
-    /// Appends the agents nearer to `p` than `radius` meters, each as a run of its own. When the grid was laid, they were
-    /// less than `margin` meters farther from `place`.
+    /// Appends the agents nearer to `p` than `radius` meters, each as a run of its own. When the grid was laid, they
+    /// were less than `margin` meters farther from `place`.
     pub fn each_near(
         &self,
         [place, p]: [Vector; 2],
