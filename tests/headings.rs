@@ -116,7 +116,7 @@ fn agents_choose_the_heading_with_the_greatest_utility() {
 }
 
 /// Found by crowds whose choices depended on how agents were grouped: the edge of the lane along the outermost heading
-/// begins behind the agent, and nobody looked there.
+/// begins behind the agent, where the search for others did not reach.
 #[test]
 fn agents_see_others_beside_their_outermost_headings() {
     let law = law();

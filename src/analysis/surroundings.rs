@@ -18,7 +18,7 @@ use engine::pairs::{Bodies, Reach};
 /// At most this share of a kernel counts as hidden: in a narrow gap, the visible rest is too small to be meaningful.
 pub const MOST_HIDDEN: f64 = 0.9;
 
-/// Walls hide nobody who is farther in front of them than this, meters: more than the rounding of distances.
+/// A wall hides no person farther in front of it than this, meters: more than the rounding of distances.
 const ON_WALL: f64 = 1e-9;
 
 /// The people around each person in a frame.
