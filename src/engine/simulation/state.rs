@@ -138,6 +138,15 @@ impl Simulation {
 }
 
 impl State {
+    /// The same state, whose lists of neighbors are made anew.
+    #[doc(hidden)]
+    pub fn without_lists(self) -> Self {
+        Self {
+            crowd_changed: true,
+            ..self
+        }
+    }
+
     /// Whether agents find their routes: the scene needs path maps, also if it has none at the start.
     pub fn has_routes(&self) -> bool {
         self.mapped_goals.is_some()
