@@ -53,6 +53,7 @@ mod late;
 mod leaving;
 mod legs;
 mod legs_runs;
+mod levels;
 mod loads;
 mod lone_agents;
 mod math;

@@ -150,7 +150,7 @@ impl ClusterBlock {
                     self.runs.push(run.into());
                 }
             }
-            if grid.period().is_some() {
+            if grid.has_images() {
                 let corners = bounds(positions[start..end].iter().copied()).unwrap_or_default();
                 self.runs.extend(grid.across(corners, reach));
             }
