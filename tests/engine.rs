@@ -53,7 +53,6 @@ mod late;
 mod leaving;
 mod legs;
 mod legs_runs;
-mod levels;
 mod loads;
 mod lone_agents;
 mod math;

@@ -14,8 +14,6 @@ pub mod limits;
 
 pub mod period;
 
-pub mod levels;
-
 #[doc(hidden)]
 pub mod random;
 

@@ -19,7 +19,6 @@ use crate::forces::social::SocialForce;
 use crate::forces::walking::WalkingLaw;
 use crate::geometry::{Polygon, Walls};
 use crate::journeys::Journeys;
-use crate::levels::Levels;
 use crate::math::Vector;
 pub use crate::neighbors::ListPolicy;
 use crate::neighbors::{FOLLOWED, MANY, Ranges, SKIN, WIDEST, WIDEST_SOCIAL};
@@ -179,8 +178,6 @@ pub struct Scene {
     pub behind: Vec<Vec<Vector>>,
     /// The period of a periodic scene: at least twice as long as any agent reaches (`Ranges::interaction`).
     pub period: Option<Period>,
-    /// The levels of a building, side by side; not in a periodic scene.
-    pub levels: Option<Arc<Levels>>,
     /// Groups by index.
     pub groups: Vec<Group>,
     /// Initial agents, in the order of their ids.
@@ -226,7 +223,6 @@ impl Default for Scene {
             walls: Walls::new(Vec::new()),
             behind: Vec::new(),
             period: None,
-            levels: None,
             groups: Vec::new(),
             agents: Vec::new(),
             sources: Vec::new(),
@@ -377,8 +373,7 @@ impl Scene {
         };
         let follow = self.neighbor_lists == ListPolicy::Complete
             && agents.len() >= MANY
-            && self.period.is_none()
-            && self.levels.is_none();
+            && self.period.is_none();
         let (drift, margin) = match self.neighbor_lists {
             ListPolicy::Complete if follow => (FOLLOWED + ahead, 0.5 * SKIN + ahead),
             ListPolicy::Complete => (0.5 * SKIN + ahead, 0.5 * SKIN + ahead),

@@ -269,7 +269,7 @@ impl Simulation {
         }
         Ok(Self {
             derived: Derived {
-                neighbors: Neighbors::on_levels(fixed.scene.levels.clone()),
+                neighbors: Neighbors::default(),
                 packed: Packed::new(fixed.scene.precision),
                 fields: Fields::default(),
                 evaluated: false,

@@ -150,7 +150,7 @@ impl ClusterBlock {
                     self.runs.push(run.into());
                 }
             }
-            if grid.has_images() {
+            if grid.period().is_some() {
                 let corners = bounds(positions[start..end].iter().copied()).unwrap_or_default();
                 self.runs.extend(grid.across(corners, reach));
             }

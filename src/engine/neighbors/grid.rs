@@ -6,7 +6,6 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::Run;
-use crate::levels::{Join, Levels};
 use crate::math::{Vector, bounds};
 use crate::period::Period;
 
@@ -27,43 +26,6 @@ fn extent(positions: &[Vector]) -> [Vector; 2] {
     let corners = some.filter_map(|some| bounds(some.iter().copied()));
     let all = corners.reduce_with(|[low, high], [a, b]| [low.inf(&a), high.sup(&b)]);
     all.unwrap_or_default()
-}
-
-/// The agents beyond a join that can be seen through it.
-#[derive(Debug, Clone)]
-struct Through {
-    join: Join,
-    /// Agents and their distances from the join, meters.
-    agents: Vec<(u32, f64)>,
-}
-
-impl Through {
-    /// Whether somebody in a box, given by its lower left and upper right corners, is before the join and at most
-    /// `radius` meters from it.
-    fn is_near(&self, [low, high]: [Vector; 2], radius: f64) -> bool {
-        let [a, b] = self.join.line;
-        let (before, after) = (a.inf(&b) - high, low - a.sup(&b));
-        let corners = [
-            low,
-            Vector::new(high.x, low.y),
-            high,
-            Vector::new(low.x, high.y),
-        ];
-        before.max().max(after.max()) <= radius
-            && !corners.into_iter().all(|p| self.join.is_beyond(p))
-    }
-
-    /// The agents at most `radius` meters from the join.
-    fn within(&self, radius: f64) -> impl Iterator<Item = Run> + '_ {
-        let near = self
-            .agents
-            .iter()
-            .filter(move |(_, distance)| *distance <= radius);
-        near.map(|&(agent, _)| Run {
-            agents: agent..agent + 1,
-            laps: -self.join.to,
-        })
-    }
 }
 
 /// A position in a grid.
@@ -89,10 +51,6 @@ pub struct Grid {
     rows: usize,
     /// Repeats the cells.
     period: Option<Period>,
-    /// What is seen through each join of levels.
-    through: Vec<Through>,
-    /// The way from a level to the next, meters.
-    level_way: Vector,
     /// The first agent of each cell, row by row; the last entry is the number of agents.
     start: Vec<u32>,
     /// The cell of each agent before the sort: memory that every sort needs.
@@ -109,8 +67,6 @@ impl Default for Grid {
             columns: 1,
             rows: 3,
             period: None,
-            through: Vec::new(),
-            level_way: Vector::zeros(),
             start: vec![0; 4],
             cell_of: Vec::new(),
         }
@@ -157,28 +113,6 @@ impl Grid {
         }
         self.start.truncate(cells + 1);
         self.cell_of = cell_of;
-    }
-
-    /// Finds who is seen through the joins of levels: those beyond a join and at most `radius` meters from it. All
-    /// agents are at the `positions` over which the grid was laid, in order.
-    pub fn look_through(&mut self, levels: &Levels, positions: &[Vector], radius: f64) {
-        self.level_way = levels.way(1);
-        self.through.clear();
-        for join in levels.joins() {
-            let way = levels.way(join.to);
-            let [a, b] = join.line.map(|p| p + way);
-            let rows = self.own_rows([a.inf(&b), a.sup(&b)], radius);
-            let agents = rows.flatten().filter_map(|j| {
-                let p = positions[j as usize] - way;
-                let distance = join.distance_squared(p).sqrt();
-                (join.is_beyond(p) && distance <= radius).then_some((j, distance))
-            });
-            let agents = agents.collect();
-            self.through.push(Through {
-                join: *join,
-                agents,
-            });
-        }
     }
 
     /// Doubles the cell size, from the smallest, until the number of cells is within the limit.
@@ -275,23 +209,8 @@ impl Grid {
         })
     }
 
-    /// The agents that are seen elsewhere than they are, within `radius` meters of a box, and some farther away: across
-    /// the ends of the period, and through joins of levels.
-    pub fn across(&self, corners: [Vector; 2], radius: f64) -> impl Iterator<Item = Run> + '_ {
-        let near = self
-            .through
-            .iter()
-            .filter(move |one| one.is_near(corners, radius));
-        let seen = near.flat_map(move |one| one.within(radius));
-        self.across_period(corners, radius).chain(seen)
-    }
-
     /// The agents in all cells within `radius` meters of a box across the ends of the period; none without period.
-    fn across_period(
-        &self,
-        [low, high]: [Vector; 2],
-        radius: f64,
-    ) -> impl Iterator<Item = Run> + '_ {
+    pub fn across(&self, [low, high]: [Vector; 2], radius: f64) -> impl Iterator<Item = Run> + '_ {
         let sides = self.period.map(|period| {
             [-1, 1].map(|laps| {
                 let corners = [low, high].map(|p| p - period.way(laps));
@@ -330,13 +249,8 @@ impl Grid {
             }
         }
         if self.period.is_some() {
-            found.extend(self.across_period([low, high], 0.0));
+            found.extend(self.across([low, high], 0.0));
         }
-        let near = self
-            .through
-            .iter()
-            .filter(|one| one.is_near([low, high], 0.0));
-        found.extend(near.flat_map(|one| one.within(f64::INFINITY)));
     }
 
     /// Whether a box is within `radius` meters of the cells.
@@ -371,20 +285,7 @@ impl Grid {
 
     /// The place from which an agent at `p` sees the agents of a run, meters.
     pub fn seen_from(&self, p: Vector, laps: i32) -> Vector {
-        if laps == 0 {
-            return p;
-        }
-        p - self.way() * f64::from(laps)
-    }
-
-    /// The way of one lap: over the period, or from a level to the next, meters; zero without either.
-    pub fn way(&self) -> Vector {
-        self.period.map_or(self.level_way, |period| period.way(1))
-    }
-
-    /// Whether agents may be seen elsewhere than they are.
-    pub fn has_images(&self) -> bool {
-        self.period.is_some() || !self.through.is_empty()
+        self.period.map_or(p, |period| p - period.way(laps))
     }
 
     /// The period of the cells.

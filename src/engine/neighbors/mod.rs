@@ -20,13 +20,11 @@ pub use run::Run;
 pub use shifts::{STRIP, Shifts};
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::agents::{Agents, Spare};
 use crate::geometry::Walls;
-use crate::levels::Levels;
 use crate::math::{Vector, bounds};
 use crate::period::Period;
 use shifts::Tiles;
@@ -118,7 +116,6 @@ impl Ranges {
 #[derive(Debug, Clone, Default)]
 pub struct Neighbors {
     ranges: Ranges,
-    levels: Option<Arc<Levels>>,
     /// Radius within which agents are listed as near, including the skin, meters.
     reach: f64,
     /// The largest radius of an agent, meters.
@@ -146,14 +143,6 @@ pub struct Neighbors {
 }
 
 impl Neighbors {
-    /// Neighbors on some levels, also through their joins.
-    pub fn on_levels(levels: Option<Arc<Levels>>) -> Self {
-        Self {
-            levels,
-            ..Self::default()
-        }
-    }
-
     /// Sorts the agents into the cells of a new grid. Invalidates all lists.
     pub fn sort(&mut self, agents: &mut Agents, ranges: Ranges) {
         self.ranges = ranges;
@@ -167,10 +156,6 @@ impl Neighbors {
         grid.rebuild(&agents.position, self.reach, period, order);
         agents.arrange_with(order, &mut self.spare);
         self.sorted_at.clone_from(&agents.position);
-        if let Some(levels) = &self.levels {
-            let radius = ranges.farthest(self.reach) + 2.0 * ranges.drift;
-            self.grid.look_through(levels, &self.sorted_at, radius);
-        }
         let strips = agents.len().div_ceil(STRIP);
         self.strips.resize(strips, Shifts::default());
     }
@@ -240,18 +225,9 @@ impl Neighbors {
         }
     }
 
-    /// The way of one lap of a [`Run`], meters: over the period, or from a level to the next; zero without either.
-    pub fn way(&self) -> Vector {
-        self.grid.way()
-    }
-
-    /// The laps from an agent to the image that is nearest to another, which is `difference` away from it, meters.
-    pub fn nearest_laps(&self, difference: Vector) -> i32 {
-        let way = self.way();
-        match way.norm_squared() {
-            0.0 => 0,
-            squared => (difference.dot(&way) / squared).round() as i32,
-        }
+    /// The period across whose ends agents are neighbors.
+    pub fn period(&self) -> Option<&Period> {
+        self.grid.period()
     }
 
     /// The neighbors for SPH and contact, and some agents out of range.
@@ -291,7 +267,7 @@ impl Neighbors {
         }
     }
 
-    /// The place from which an agent at `p` sees the agents of a run: across the ends of a period, or through a join.
+    /// The place from which an agent at `p` sees the agents of a run: with a period, they may be seen across its ends.
     pub fn seen_from(&self, p: Vector, laps: i32) -> Vector {
         self.grid.seen_from(p, laps)
     }

@@ -7,6 +7,7 @@ use super::{dispatch, level};
 use crate::agents::Agents;
 use crate::math::Vector;
 use crate::neighbors::{BLOCK, TASK};
+use crate::period::Period;
 
 /// One array per quantity, in the agents' order, padded by [`LANES`] entries so that the last vector load stays in
 /// bounds.
@@ -67,10 +68,10 @@ impl<R: Real> Columns<R> {
         &mut self,
         agents: &Agents,
         unit: f64,
-        way: Vector,
+        period: Option<&Period>,
         reach: impl Fn(usize) -> Reach + Sync,
     ) {
-        self.bodies.take(agents, unit, way, reach);
+        self.bodies.take(agents, unit, period, reach);
         reset(&mut self.volume, agents);
         reset(&mut self.pressure, agents);
     }
@@ -83,11 +84,12 @@ impl<R: Real> Bodies<R> {
         &mut self,
         agents: &Agents,
         unit: f64,
-        way: Vector,
+        period: Option<&Period>,
         reach: impl Fn(usize) -> Reach + Sync,
     ) {
         self.unit = unit;
-        self.period = [way.x, way.y].map(|meters| R::coordinate(meters, 1.0 / unit));
+        let way: [f64; 2] = period.map_or([0.0; 2], |period| period.way(1).into());
+        self.period = way.map(|meters| R::coordinate(meters, 1.0 / unit));
         reset(&mut self.x, agents);
         reset(&mut self.y, agents);
         reset(&mut self.velocity_x, agents);

@@ -24,7 +24,7 @@ pub use floor::{Narrowing, Narrowings, Passage, Passages};
 #[doc(hidden)]
 pub use followed::{MapKey, Regions, RoutesOut, Shortest, Walker};
 #[doc(hidden)]
-pub use paths::{Goal, Next, Onward, PathMap, SLACK, Way, around};
+pub use paths::{Goal, Next, PathMap, SLACK, Way, around};
 #[doc(hidden)]
 pub use rooms::{Door, Located, Opening, Side, WIDEST};
 

@@ -37,7 +37,7 @@ impl Simulation {
             ListPolicy::Complete => self.derived.neighbors.are_stale(),
             ListPolicy::Coarse => self.crowd.decides(),
         };
-        if self.crowd.changed || stale || self.has_left_period() || self.has_changed_level() {
+        if self.crowd.changed || stale || self.has_left_period() {
             self.sort_agents();
         }
         let needs = &self.fixed.needs;
@@ -50,7 +50,7 @@ impl Simulation {
         if neighbors.near().is_empty() || packed.is_empty() {
             self.stages.time(Stage::Neighbors, || {
                 neighbors.list_agents();
-                packed.take_bodies(agents, neighbors.extent(), neighbors.way(), |i| {
+                packed.take_bodies(agents, neighbors.extent(), neighbors.period(), |i| {
                     fixed.blend(agents, i).reach()
                 });
             });
@@ -67,24 +67,12 @@ impl Simulation {
         })
     }
 
-    /// Whether an agent has walked across a join of levels.
-    fn has_changed_level(&self) -> bool {
-        let positions = self.crowd.agents.position.par_iter();
-        self.fixed.scene.levels.as_ref().is_some_and(|levels| {
-            let positions = positions.with_min_len(TASK * BLOCK);
-            positions.any(|&position| levels.passed(position).is_some())
-        })
-    }
-
     /// Sorts the agents into cells, and lists the walls near them. Agents that have left the period reenter at its
-    /// other end, and those that have walked across a join are moved to the next level.
+    /// other end.
     pub(super) fn sort_agents(&mut self) {
         let (fixed, crowd, derived) = (&self.fixed, &mut self.crowd, &mut self.derived);
         if let Some(period) = &fixed.scene.period {
             crowd.agents.wrap(period);
-        }
-        if let Some(levels) = &fixed.scene.levels {
-            crowd.agents.change_levels(levels);
         }
         let ranges = fixed.scene.ranges(&fixed.needs, &crowd.agents);
         let neighbors = &mut derived.neighbors;

@@ -3,18 +3,14 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::levels::Levels;
 use crate::math::Vector;
 use crate::routes::floor::Floor;
-use crate::routes::paths::{Goal, Onward, PathMap, Way, points};
+use crate::routes::paths::{Goal, PathMap, Way, points};
 use crate::routes::rooms::{Rooms, Side};
 use crate::routes::{MOST_GOALS, WayError};
 
 /// Lines are shortened by this at both ends, so that no end lies on a wall, meters.
 const LINE_MARGIN: f64 = 0.01;
-
-/// Ways whose lengths differ by less than this are equally long, meters.
-const TIE: f64 = 1e-9;
 
 /// Path maps to the places and goals of a scene.
 #[derive(Debug, Clone)]
@@ -53,39 +49,6 @@ pub enum MapKey {
     Room(u16),
 }
 
-/// The points behind all joins of `levels` from which a way leads to `goals`, with the lengths of these ways: those on
-/// the levels beyond, from which they may go on to further ones.
-fn ways_onward(floor: &Floor, levels: &Levels, goals: &[Goal]) -> Result<Vec<Onward>, WayError> {
-    let points: Vec<[Vector; 2]> = levels
-        .joins()
-        .iter()
-        .flat_map(|join| {
-            let way = levels.way(join.to);
-            join.points_behind().map(move |point| [point, point + way])
-        })
-        .collect();
-    let mut lengths = vec![f64::INFINITY; points.len()];
-    loop {
-        let known = points.iter().zip(&lengths);
-        let known = known.filter(|(_, rest)| rest.is_finite());
-        let onward: Vec<Onward> = known
-            .map(|(&[point, _], &rest)| Onward { point, rest })
-            .collect();
-        let map = PathMap::few_over(floor, goals, &onward, LINE_MARGIN)?;
-        let mut are_known = true;
-        for (&[_, beyond], rest) in points.iter().zip(&mut lengths) {
-            let way = map.way_from(floor, beyond);
-            let length = way.map_or(f64::INFINITY, |way| way.length);
-            if length < *rest - TIE {
-                (*rest, are_known) = (length, false);
-            }
-        }
-        if are_known {
-            return Ok(onward);
-        }
-    }
-}
-
 impl Routes {
     /// Path maps to `places`, each of which may have several lines and points, and to `goals`, points on the floor.
     ///
@@ -106,39 +69,6 @@ impl Routes {
             rooms: None,
             beneath: Vec::new(),
         })
-    }
-
-    /// Path maps as in [`new`](Self::new) to places and goals on any of some `levels`.
-    ///
-    /// # Errors
-    /// A goal, all of a place, or the floor behind a join is not on the floor.
-    pub fn on_levels(
-        floor: Floor,
-        levels: &Levels,
-        places: &[Vec<Goal>],
-        goals: Vec<Vector>,
-    ) -> Result<Self, WayError> {
-        let points = goals.iter().map(|&goal| vec![Goal::Point(goal)]);
-        let all: Vec<Vec<Goal>> = places.iter().cloned().chain(points).collect();
-        let maps = all.iter().map(|goals| {
-            let onward = ways_onward(&floor, levels, goals)?;
-            PathMap::leading_on(&floor, goals, &onward, LINE_MARGIN)
-        });
-        let maps = maps.collect::<Result<_, _>>()?;
-        Ok(Self {
-            maps,
-            ..Self::new(floor, &[], Vec::new())?
-        }
-        .with_goals(places.len(), goals))
-    }
-
-    fn with_goals(self, places: usize, goals: Vec<Vector>) -> Self {
-        Self {
-            places,
-            first_goals: goals.len(),
-            goals,
-            ..self
-        }
     }
 
     /// Adds a path map to a goal, in place of an added one that is no longer used.

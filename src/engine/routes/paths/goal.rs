@@ -15,15 +15,6 @@ pub enum Goal {
     Line([Vector; 2]),
 }
 
-/// A point from which the way goes on elsewhere, on another level of a building.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Onward {
-    /// The point, meters.
-    pub point: Vector,
-    /// The length of the way from there, meters.
-    pub rest: f64,
-}
-
 /// Everything that sees some goals.
 pub struct Seen {
     /// The parts of the goals, and the lengths of the routes from bends, infinite for bends that do not see a goal.
@@ -33,17 +24,12 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Finds everything that sees `goals`, or points from which the way goes `onward` to them. Lines are shortened by `margin` meters at both ends. Lines off the floor,
+    /// Finds everything that sees `goals`. Lines are shortened by `margin` meters at both ends. Lines off the floor,
     /// such as sides of a waiting area along a wall, are left out.
     ///
     /// # Errors
     /// A point, or all of the goals, is not on the floor.
-    pub fn new(
-        floor: &Floor,
-        goals: &[Goal],
-        onward: &[Onward],
-        margin: f64,
-    ) -> Result<Self, WayError> {
+    pub fn new(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
         let bends = 2 * floor.corners.len();
         let mut seen = Self {
             targets: Targets {
@@ -57,7 +43,7 @@ impl Seen {
         for goal in goals {
             match *goal {
                 Goal::Point(point) => {
-                    let found = seen.look_from(floor, [point; 2], 0.0);
+                    let found = seen.look_from(floor, point, point);
                     found.ok_or(WayError::NotOnFloor(point))?;
                 }
                 Goal::Line(line) => {
@@ -68,16 +54,12 @@ impl Seen {
                     for piece in pieces {
                         let [a, b] = shortened(piece, margin);
                         let middle = (a + b) / 2.0;
-                        seen.look_from(floor, [a, middle], 0.0);
-                        seen.look_from(floor, [b, middle], 0.0);
+                        seen.look_from(floor, a, middle);
+                        seen.look_from(floor, b, middle);
                         seen.look_across(floor, [a, b]);
                     }
                 }
             }
-        }
-        for &Onward { point, rest } in onward {
-            let found = seen.look_from(floor, [point; 2], rest);
-            found.ok_or(WayError::NotOnFloor(point))?;
         }
         match off.filter(|_| seen.targets.sources.is_empty()) {
             Some(point) => Err(WayError::NotOnFloor(point)),
@@ -85,11 +67,10 @@ impl Seen {
         }
     }
 
-    /// Adds a part of a goal, from which the rest of the way is `rest` meters long; returns its number.
-    fn add(&mut self, source: Source, rest: f64) -> u32 {
+    /// Adds a part of a goal; returns its number.
+    fn add(&mut self, source: Source) -> u32 {
         let targets = &mut self.targets;
         targets.sources.push(source);
-        targets.rest_of_sources.push(rest);
         (targets.rest.len() + targets.sources.len() - 1) as u32
     }
 
@@ -104,16 +85,16 @@ impl Seen {
         expand(&floor.mesh, sights, enter, see);
     }
 
-    /// Adds everything that sees `point`, which is a goal or an end of the line with this `middle`, and from which the
-    /// rest of the way is `rest` meters long; `None` if it is not on the floor.
-    fn look_from(&mut self, floor: &Floor, [point, middle]: [Vector; 2], rest: f64) -> Option<()> {
+    /// Adds everything that sees `point`, which is a goal or an end of the line with this `middle`; `None` if it is not
+    /// on the floor.
+    fn look_from(&mut self, floor: &Floor, point: Vector, middle: Vector) -> Option<()> {
         let mesh = &floor.mesh;
         let t = floor.locate(point)?;
         let corners = mesh.corners(t);
         // For a point on a side, the visible cone through this side would have no width.
         let inside = (corners[0] + corners[1] + corners[2]) / 3.0;
         let eye = point + (inside - point) * INSIDE;
-        let target = self.add(Source::Point { point, eye, middle }, rest);
+        let target = self.add(Source::Point { point, eye, middle });
         let mut sights = Vec::new();
         for side in 0..3 {
             let view = View {
@@ -134,7 +115,7 @@ impl Seen {
         let mesh = &floor.mesh;
         for away in [perpendicular(b - a), -perpendicular(b - a)] {
             let ends = [a, b];
-            let target = self.add(Source::Line { ends, away }, 0.0);
+            let target = self.add(Source::Line { ends, away });
             for t in 0..mesh.triangles().len() as u32 {
                 let corners = mesh.corners(t);
                 let Some(piece) = clipped([a, b], corners) else {
@@ -185,7 +166,7 @@ fn meet(floor: &Floor, (t, k): (u32, usize), target: u32, targets: &mut Targets)
                 corner: c,
                 turn: turn.other(),
             };
-            let length = (corner.place - point).norm() + targets.rest(target);
+            let length = (corner.place - point).norm();
             if length < targets.rest[bend.index()] {
                 targets.rest[bend.index()] = length;
                 targets.next[bend.index()] = target;

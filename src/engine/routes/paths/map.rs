@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use serde::{Deserialize, Serialize};
 
 use super::entries::{Entries, spread};
-use super::goal::{Goal, Onward, Seen};
+use super::goal::{Goal, Seen};
 use super::parts::Parts;
 use super::region::{Candidate, Region};
 use super::targets::{Entry, Source, Targets};
@@ -100,22 +100,7 @@ impl PathMap {
     /// # Errors
     /// A goal is not on the floor.
     pub fn new(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
-        Self::leading_on(floor, goals, &[], margin)
-    }
-
-    /// The map of one or more goals as in [`new`](Self::new), to which the way also leads over points elsewhere.
-    ///
-    /// # Errors
-    /// A goal or a point is not on the floor.
-    pub fn leading_on(
-        floor: &Floor,
-        goals: &[Goal],
-        onward: &[Onward],
-        margin: f64,
-    ) -> Result<Self, WayError> {
-        let mut map = Self::built(floor, (goals, onward, margin), |targets, entries| {
-            Parts::new(floor, targets, entries.of_triangles())
-        })?;
+        let mut map = Self::within(floor, goals, margin)?;
         map.find_routes_out(floor);
         Ok(map)
     }
@@ -126,20 +111,7 @@ impl PathMap {
     /// # Errors
     /// A goal is not on the floor.
     pub fn for_few(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
-        Self::few_over(floor, goals, &[], margin)
-    }
-
-    /// The map as in [`leading_on`](Self::leading_on), for few positions.
-    ///
-    /// # Errors
-    /// A goal or a point is not on the floor.
-    pub fn few_over(
-        floor: &Floor,
-        goals: &[Goal],
-        onward: &[Onward],
-        margin: f64,
-    ) -> Result<Self, WayError> {
-        let mut map = Self::built(floor, (goals, onward, margin), |targets, entries| {
+        let mut map = Self::built(floor, goals, margin, |targets, entries| {
             Parts::undivided(floor, targets, entries.of_triangles())
         })?;
         map.find_routes_out(floor);
@@ -151,17 +123,18 @@ impl PathMap {
     /// # Errors
     /// A goal is not on the floor.
     pub fn within(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
-        Self::built(floor, (goals, &[], margin), |targets, entries| {
+        Self::built(floor, goals, margin, |targets, entries| {
             Parts::new(floor, targets, entries.of_triangles())
         })
     }
 
     fn built(
         floor: &Floor,
-        (goals, onward, margin): (&[Goal], &[Onward], f64),
+        goals: &[Goal],
+        margin: f64,
         divide: impl FnOnce(&Targets, Entries) -> Parts,
     ) -> Result<Self, WayError> {
-        let mut seen = Seen::new(floor, goals, onward, margin)?;
+        let mut seen = Seen::new(floor, goals, margin)?;
         spread(floor, &mut seen.targets);
         let Seen { mut targets, views } = seen;
         targets.find_beyond(floor);

@@ -10,7 +10,7 @@ mod region;
 mod steer;
 mod targets;
 
-pub use goal::{Goal, Onward};
+pub use goal::Goal;
 pub use map::{Next, PathMap, SLACK, Way};
 pub use points::{end, points};
 pub use steer::{End, around, between_borders};

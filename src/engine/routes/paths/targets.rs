@@ -55,8 +55,6 @@ pub struct Targets {
     pub beyond: Vec<[f32; 2]>,
     /// The parts of the goals.
     pub sources: Vec<Source>,
-    /// The length of the rest of the way from each source, meters: 0, but where the way goes on elsewhere.
-    pub rest_of_sources: Vec<f64>,
     /// Points on the edges of the visible cones of the sources, in addition to those of the floor, meters.
     pub borders: Vec<Vector>,
 }
@@ -150,9 +148,7 @@ impl Targets {
     /// The length of the rest of the way from a target, meters.
     #[inline]
     pub fn rest(&self, target: u32) -> f64 {
-        let target = target as usize;
-        let of_bend = self.rest.get(target);
-        *of_bend.unwrap_or_else(|| &self.rest_of_sources[target - self.rest.len()])
+        self.rest.get(target as usize).copied().unwrap_or_default()
     }
 
     /// The length of the way from `p` over a target, meters.
@@ -226,7 +222,6 @@ impl Targets {
     /// The memory that it takes, bytes.
     pub fn bytes(&self) -> usize {
         let of_bends = bytes_of(&self.rest) + bytes_of(&self.next) + bytes_of(&self.beyond);
-        let of_sources = bytes_of(&self.sources) + bytes_of(&self.rest_of_sources);
-        of_bends + bytes_of(&self.borders) + of_sources
+        of_bends + bytes_of(&self.borders) + bytes_of(&self.sources)
     }
 }
