@@ -132,20 +132,23 @@ fn lists_that_follow_a_large_crowd_change_only_the_rounding() {
     begun = Simulation::resumed(large_crowd(), begun.state()).unwrap();
     common::run(&mut begun, u64::from(frames / 2));
     assert!(bits(&one) == bits(&begun));
-    let [density, acceleration, compared] =
-        differences_from_lists_made_anew(watched, large_crowd());
-    assert!(
-        density < 1e-12 && acceleration < 1e-9,
-        "{density}, {acceleration}"
-    );
-    assert!(compared > MANY as f64 / 2.0, "{compared} compared");
+    let most = differences_from_lists_made_anew(watched, large_crowd());
+    assert!(most.density < 1e-12 && most.acceleration < 1e-9, "{most:?}");
+    assert!(most.compared > MANY / 2, "{most:?}");
 }
 
-/// The largest differences of densities and accelerations from those with lists that are made anew for the state of
-/// `watched`, and the number of accelerations that are compared: those next to whom no pressure is so close to 0 that
-/// rounding decides its sign.
-fn differences_from_lists_made_anew(mut watched: Simulation, scene: Scene) -> [f64; 3] {
-    // The frame after one with a sort.
+/// The largest differences between results with lists that follow and with lists made anew.
+#[derive(Debug, Default)]
+struct Differences {
+    density: f64,
+    acceleration: f64,
+    /// The number of accelerations that were compared.
+    compared: usize,
+}
+
+/// Compares the results of the next frame after a sort with those of lists made anew for the same state. Accelerations
+/// of agents with a neighbor at a pressure next to 0 are left out: rounding decides its sign.
+fn differences_from_lists_made_anew(mut watched: Simulation, scene: Scene) -> Differences {
     let mut sorted = false;
     while !sorted {
         watched.evaluate().unwrap();
@@ -161,18 +164,19 @@ fn differences_from_lists_made_anew(mut watched: Simulation, scene: Scene) -> [f
     assert!(followed.neighbors.sorted_at() != followed.agents.position);
     assert!(anew.neighbors.sorted_at() == anew.agents.position);
     let (own, other) = (followed.fields, anew.fields);
-    let [mut density, mut acceleration, mut compared]: [f64; 3] = [0.0; 3];
+    let mut most = Differences::default();
     for (i, id) in followed.agents.id.iter().enumerate() {
         let j = anew.agents.index_of(*id).unwrap();
-        density = density.max((own.density[i] - other.density[j]).abs());
+        most.density = most.density.max((own.density[i] - other.density[j]).abs());
         let near = followed.neighbors.near().near(i);
         let pressures = near.map(|(k, _)| own.pressure[k].abs());
         if pressures.fold(f64::INFINITY, f64::min) > 1e-9 {
-            compared += 1.0;
-            acceleration = acceleration.max((own.acceleration[i] - other.acceleration[j]).norm());
+            most.compared += 1;
+            let difference = (own.acceleration[i] - other.acceleration[j]).norm();
+            most.acceleration = most.acceleration.max(difference);
         }
     }
-    [density, acceleration, compared]
+    most
 }
 
 /// Two streams of a large crowd that meet, on which lists follow with each kind of walking.
@@ -190,17 +194,12 @@ fn lists_that_follow_serve_walking_social_forces_and_avoidance() {
             scene
         };
         let watched = simulated(streams(), 2, 20);
-        let [density, acceleration, compared] =
-            differences_from_lists_made_anew(watched, streams());
-        println!("{profile}: density {density}, acceleration {acceleration}, {compared} compared");
+        let most = differences_from_lists_made_anew(watched, streams());
         assert!(
-            density < 1e-12 && acceleration < 1e-9,
-            "{profile}: {density}, {acceleration}"
+            most.density < 1e-12 && most.acceleration < 1e-9,
+            "{profile}: {most:?}"
         );
-        assert!(
-            compared > MANY as f64 / 3.0,
-            "{profile}: {compared} compared"
-        );
+        assert!(most.compared > MANY / 3, "{profile}: {most:?}");
     }
 }
 

@@ -126,3 +126,26 @@ fn the_page_names_the_version_and_the_defaults() {
         assert_eq!(case["kind"], row["kind"]);
     }
 }
+
+#[test]
+fn values_of_steer_are_those_of_the_present_validation() {
+    let status: Value =
+        serde_json::from_str(include_str!("../docs/findings/validation.json")).unwrap();
+    let ratios = &status["profiles"]["steer+sph"]["ratios"];
+    let mut compared = 0;
+    for row in data()["values"].as_array().unwrap() {
+        let [case, quantity] = [&row["case"], &row["quantity"]].map(|name| name.as_str().unwrap());
+        // The validation has no ratios of scenes that need data.
+        if case.starts_with("data-") {
+            continue;
+        }
+        let now = ratios[case][quantity].as_f64().unwrap() - 1.0;
+        let shown = deviation(row, "steer+sph").unwrap();
+        assert!(
+            (now - shown).abs() < 1e-4,
+            "{case}, {quantity}: {shown}, now {now}"
+        );
+        compared += 1;
+    }
+    assert!(compared > 40, "{compared} compared");
+}
