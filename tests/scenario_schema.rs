@@ -158,8 +158,11 @@ fn every_object_has_the_keys_that_the_parser_knows() {
 fn check_keys(document: &Value, pointer: &str, schema: &Value) {
     let properties = schema["properties"].as_object().unwrap();
     let mut keys: Vec<&str> = properties.keys().map(String::as_str).collect();
-    keys.retain(|key| properties[*key]["deprecated"] != true && *key != "$schema");
+    // Reading takes the key `level` away before the others are parsed.
+    let is_parsed = |key: &str| key != "$schema" && key != "level";
+    keys.retain(|key| properties[*key]["deprecated"] != true && is_parsed(key));
     let mut expected = known(document, pointer);
+    expected.retain(|key| is_parsed(key));
     expected.sort();
     assert_eq!(keys, expected, "{pointer}");
     // The parser refuses an object without a key if and only if the key is required.

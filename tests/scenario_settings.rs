@@ -73,6 +73,9 @@ fn the_keys_of_nested_objects_are_documented() {
         let optional = documented.iter().filter(|key| key.ends_with('?'));
         assert_eq!(optional.count(), documented.len() - required, "{list}");
         let mut known = known_keys(&json!({ list: [first] }).to_string());
+        // Reading takes `level` away before the others are parsed.
+        known.retain(|key| key != "level");
+        known.push("level".to_owned());
         if list == "grids" {
             known.retain(|key| !["start_secs", "every_secs", "times"].contains(&key.as_str()));
         }
@@ -91,7 +94,7 @@ fn the_keys_of_nested_objects_are_documented() {
              front, push, oscillation, contacts, jitter, closest, integrity, speed_by_density, walks, line_flow, \
              exposure, service_levels, crowd_pressure, unbalanced, body_forces, wall_forces or frame_time",
         ),
-        ("measurements.density", "at_secs, region?"),
+        ("measurements.density", "at_secs, level?, region?"),
         (
             "waiting_areas.for_secs",
             "one of uniform, normal, lognormal, weibull, gamma, exponential, values or weidmann_age",

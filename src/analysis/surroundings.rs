@@ -104,7 +104,7 @@ impl<'a> Surroundings<'a> {
     pub fn from_people(&self, only_visible: bool) -> Vec<f64> {
         let agents = &self.agents;
         let mut bodies = Bodies::<f64>::default();
-        bodies.take(agents, 1.0, None, |_| self.reach());
+        bodies.take(agents, 1.0, Vector::zeros(), |_| self.reach());
         bodies.take_motions(agents);
         let mut sums = vec![0.0; agents.len()];
         let blocks = sums.par_chunks_mut(BLOCK).enumerate();
@@ -162,7 +162,7 @@ impl<'a> Surroundings<'a> {
             agents.mass[i] = if known.is_some() { 1.0 } else { 0.0 };
         }
         let mut bodies = Bodies::<f64>::default();
-        bodies.take(&agents, 1.0, None, |_| self.reach());
+        bodies.take(&agents, 1.0, Vector::zeros(), |_| self.reach());
         bodies.take_motions(&agents);
         let mut found = vec![Moments::default(); agents.len()];
         let blocks = found.par_chunks_mut(BLOCK).enumerate();

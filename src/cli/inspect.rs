@@ -20,7 +20,7 @@ use engine::breakdown::Breakdown;
 use engine::pairs::Precision;
 use engine::simulation::Simulation;
 use runs::outputs::{Manner, Outputs};
-use scenario::quote::printable;
+use scenario::quote::{printable, shown};
 
 #[derive(Args)]
 pub struct InspectOptions {
@@ -88,7 +88,7 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
         let breakdown = breakdown(&simulation, id, i)?;
         say(match as_json {
             true => format!("{}{}", if k > 0 { "," } else { "" }, json!(breakdown)),
-            false => printable(&format!("\n{breakdown}")),
+            false => printable(&format!("\n{}{breakdown}", in_building(&simulation, i))),
         })?;
     }
     match as_json {
@@ -98,6 +98,21 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
         )),
         false => Ok(()),
     }
+}
+
+/// A line with the place of agent `i` in its building; empty on a single floor.
+fn in_building(simulation: &Simulation, i: usize) -> String {
+    let p = simulation.frame().agents.position[i];
+    simulation.scene().levels.as_ref().map_or(String::new(), |levels| {
+        let (place, name) = (levels.in_building(p), &levels.all()[levels.level(p)].name);
+        format!(
+            "on `{}` at ({:.4}, {:.4}), {:.2} m high; positions below are those of levels side by side\n",
+            shown(name),
+            place.x,
+            place.y,
+            levels.height(p)
+        )
+    })
 }
 
 fn breakdown(simulation: &Simulation, id: u32, i: usize) -> Result<Breakdown, Failure> {

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use columns::Column;
 
 use crate::journeys::Trip;
+use crate::levels::Levels;
 use crate::math::Vector;
 use crate::period::Period;
 use crate::random::{self, Purpose};
@@ -314,6 +315,23 @@ impl Agents {
             }
             *position = image;
             self.laps[i] = self.laps[i].wrapping_add(passed);
+        }
+    }
+
+    /// Moves agents that have walked across a join to the level beyond, where they look for their way again.
+    pub fn change_levels(&mut self, levels: &Levels) {
+        for (i, position) in self.position.iter_mut().enumerate() {
+            let Some(way) = levels.passed(*position) else {
+                continue;
+            };
+            for states in &mut self.states {
+                states.shift(i, way);
+            }
+            *position += way;
+            if let Some(route) = self.route.get_mut(i) {
+                *route = None;
+                self.lacks_routes = true;
+            }
         }
     }
 

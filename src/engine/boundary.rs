@@ -2,7 +2,7 @@
 //!
 //! Plain form of the paper's method: `density_by_wall` and `pressure_by_wall` in `examples/paper.rs`.
 
-use libm::atan2;
+use libm::{asinh, atan2};
 use std::f64::consts::PI;
 
 use crate::geometry::{HiddenRegion, Walls, visible_parts};
@@ -177,7 +177,7 @@ impl Antiderivatives {
         let r2 = q2 + s2;
         let r = r2.sqrt();
         // q² A and q⁴ A vanish with q.
-        let q2a = if q2 > 0.0 { q2 * (s / q).asinh() } else { 0.0 };
+        let q2a = if q2 > 0.0 { q2 * asinh(s / q) } else { 0.0 };
         // cos t and sin t. At q = s = 0 the direction is arbitrary: its weight is 0.
         let (cosine, sine) = if r > 0.0 { (q / r, s / r) } else { (1.0, 0.0) };
         Self {

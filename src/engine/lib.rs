@@ -14,6 +14,8 @@ pub mod limits;
 
 pub mod period;
 
+pub mod levels;
+
 #[doc(hidden)]
 pub mod random;
 

@@ -19,6 +19,7 @@ use crate::forces::social::SocialForce;
 use crate::forces::walking::WalkingLaw;
 use crate::geometry::{Polygon, Walls};
 use crate::journeys::Journeys;
+use crate::levels::Levels;
 use crate::math::Vector;
 pub use crate::neighbors::ListPolicy;
 use crate::neighbors::{FOLLOWED, MANY, Ranges, SKIN, WIDEST, WIDEST_SOCIAL};
@@ -178,6 +179,8 @@ pub struct Scene {
     pub behind: Vec<Vec<Vector>>,
     /// The period of a periodic scene: at least twice as long as any agent reaches (`Ranges::interaction`).
     pub period: Option<Period>,
+    /// The levels of a building, side by side; not in a periodic scene.
+    pub levels: Option<Arc<Levels>>,
     /// Groups by index.
     pub groups: Vec<Group>,
     /// Initial agents, in the order of their ids.
@@ -223,6 +226,7 @@ impl Default for Scene {
             walls: Walls::new(Vec::new()),
             behind: Vec::new(),
             period: None,
+            levels: None,
             groups: Vec::new(),
             agents: Vec::new(),
             sources: Vec::new(),
@@ -351,6 +355,16 @@ impl Scene {
             .max(here)
     }
 
+    /// The way that an agent walked from one place to another, meters: across the end of the period, or over joins of
+    /// levels.
+    pub fn walked(&self, from: Vector, to: Vector) -> Vector {
+        match (&self.period, &self.levels) {
+            (Some(period), _) => period.shortest(to - from),
+            (None, Some(levels)) => levels.in_building(to) - levels.in_building(from),
+            (None, None) => to - from,
+        }
+    }
+
     /// The largest preferred speed of all agents in any zone, m/s.
     pub fn highest_pace(&self, agents: &Agents) -> f64 {
         let own = agents.preferred_speed.iter().copied();
@@ -373,7 +387,8 @@ impl Scene {
         };
         let follow = self.neighbor_lists == ListPolicy::Complete
             && agents.len() >= MANY
-            && self.period.is_none();
+            && self.period.is_none()
+            && self.levels.is_none();
         let (drift, margin) = match self.neighbor_lists {
             ListPolicy::Complete if follow => (FOLLOWED + ahead, 0.5 * SKIN + ahead),
             ListPolicy::Complete => (0.5 * SKIN + ahead, 0.5 * SKIN + ahead),

@@ -269,7 +269,7 @@ impl Simulation {
         }
         Ok(Self {
             derived: Derived {
-                neighbors: Neighbors::default(),
+                neighbors: Neighbors::on_levels(fixed.scene.levels.clone()),
                 packed: Packed::new(fixed.scene.precision),
                 fields: Fields::default(),
                 evaluated: false,

@@ -10,7 +10,7 @@ use engine::simulation::{EventKind, Limited, SPOT_RADIUS};
 use engine::stability::{FITTED, Scheme, three_digits};
 use scenario::measurements::LongestQueue;
 use scenario::quote::shown;
-use scenario::{automatic_step, doubtful_radius, tidy};
+use scenario::{automatic_step, doubtful_radius, in_building, tidy};
 
 /// Notes on displaced agents, stopped moves, clamped speeds, agents that waited for room, queues that were too long for
 /// their line or too dense, and pushes without agents.
@@ -23,7 +23,12 @@ pub fn of(run: &Run) -> Vec<String> {
         .chain(idle_pushes(run))
         .chain(early(run))
         .chain(unseen(run));
-    all.map(|note| tidy(&note)).collect()
+    let levels = run.simulation.scene().levels.as_ref();
+    let in_building = |note: String| match levels {
+        Some(levels) => in_building(levels, &note),
+        None => note,
+    };
+    all.map(|note| in_building(tidy(&note))).collect()
 }
 
 /// Notes on agents that were moved, and on stopped moves and clamped speeds if they are 1 % of all moves or more.

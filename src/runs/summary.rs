@@ -8,8 +8,11 @@ use serde_json::{Value, json};
 
 use crate::drive::{End, Run};
 use engine::journeys::{Kind, Place};
+use engine::levels::Levels;
+use engine::math::Vector;
 use engine::scene::Scene;
 use engine::simulation::{self, PlaceState, Simulation};
+use scenario::in_building;
 use scenario::measurements::{
     HighestDensity, Left, LongestQueue, Metric, StuckGroup, times_to_leave,
 };
@@ -147,7 +150,7 @@ impl Summary {
         let removed = outcome.removed.len();
         let staying = frame.agents.entered() - removed as u32;
         let [t50_secs, t95_secs, t100_secs] = times_to_leave(&times, staying);
-        Self {
+        let mut summary = Self {
             scenario: scenario.name.clone(),
             profile: scenario.profile_name.clone(),
             seed: scenario.seed,
@@ -177,6 +180,30 @@ impl Summary {
             clamped_speeds: outcome.clamped.count,
             backlogs: simulation.backlogs().map(backlog).collect(),
             displaced_agents: outcome.displaced.len(),
+        };
+        if let Some(levels) = &simulation.scene().levels {
+            summary.name_levels(levels);
+        }
+        summary
+    }
+
+    /// Turns places of the plane, in which levels lie side by side, into those of the building.
+    fn name_levels(&mut self, levels: &Levels) {
+        let of_highest = self.highest_density.iter_mut();
+        let of_highest = of_highest.map(|highest| (&mut highest.at, &mut highest.level));
+        let of_stuck = self.stuck_because.iter_mut();
+        let of_stuck = of_stuck.map(|group| {
+            group.cause = in_building(levels, &group.cause);
+            (&mut group.at, &mut group.level)
+        });
+        let of_queues = self.longest_queues.iter_mut().map(|queue| {
+            queue.before = in_building(levels, &queue.before);
+            (&mut queue.at, &mut queue.level)
+        });
+        for (at, level) in of_highest.chain(of_stuck).chain(of_queues) {
+            let place = Vector::from(*at);
+            *level = Some(levels.all()[levels.level(place)].name.clone());
+            *at = levels.in_building(place).into();
         }
     }
 
@@ -204,7 +231,7 @@ impl Summary {
             ("t50_secs", _) => self.t50_secs,
             ("t95_secs", _) => self.t95_secs,
             ("t100_secs", _) => self.t100_secs,
-            ("highest_density", _) => self.highest_density.map(|highest| highest.density_per_m2),
+            ("highest_density", _) => Some(self.highest_density.as_ref()?.density_per_m2),
             ("longest_queue", _) => Some(
                 self.longest_queues
                     .iter()

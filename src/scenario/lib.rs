@@ -71,6 +71,8 @@ pub use read::scenario::{read_text, shipped_text};
 #[doc(hidden)]
 pub use read::shipped::built_in;
 #[doc(hidden)]
+pub use scene::levels::in_building;
+#[doc(hidden)]
 pub use scene::need::{Need, in_units};
 #[doc(hidden)]
 pub use scene::numerics::automatic_step;

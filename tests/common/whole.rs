@@ -12,11 +12,13 @@ pub fn whole() -> Value {
 }
 
 /// Scenarios that together have every key, except those of trajectory files: some keys exclude each other.
-pub fn documents() -> [Value; 3] {
+pub fn documents() -> [Value; 4] {
     let journeys = include_str!("../data/whole_journeys.json");
     let periodic = include_str!("../data/whole_periodic.json");
-    let [journeys, periodic] = [journeys, periodic].map(|text| serde_json::from_str(text).unwrap());
-    [whole(), journeys, periodic]
+    let building = include_str!("../data/whole_building.json");
+    let others = [journeys, periodic, building].map(|text| serde_json::from_str(text).unwrap());
+    let [journeys, periodic, building] = others;
+    [whole(), journeys, periodic, building]
 }
 
 /// An object of a document.

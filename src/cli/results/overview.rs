@@ -106,14 +106,20 @@ fn highest_density(summary: &Summary) -> String {
         0 => "none: no agents entered",
         _ => "not computed by this profile",
     };
-    let Some(highest) = summary.highest_density else {
+    let Some(highest) = &summary.highest_density else {
         return none.to_owned();
     };
     let ([x, y], secs, density) = (highest.at, highest.at_secs, highest.density_per_m2);
     let large = highest
         .of_large()
         .map_or(String::new(), |large| format!(", {large}"));
-    format!("{density:.2} P/m² at ({x:.2}, {y:.2}) after {secs:.2} s (SPH density{large})")
+    let level = on_level(highest.level.as_deref());
+    format!("{density:.2} P/m² at ({x:.2}, {y:.2}){level} after {secs:.2} s (SPH density{large})")
+}
+
+/// The level of a place, if it lies in a building.
+fn on_level(level: Option<&str>) -> String {
+    level.map_or(String::new(), |level| format!(" on `{}`", shown(level)))
 }
 
 /// The most people in a queue.
@@ -168,9 +174,11 @@ fn stuck_because(groups: &[StuckGroup]) -> impl Iterator<Item = String> {
             agents,
             agent,
             at: [x, y],
+            level,
             for_secs,
         } = group;
-        format!("{agents}: {cause} (agent {agent} at ({x:.2}, {y:.2}), for {for_secs:.0} s)")
+        let level = on_level(level.as_deref());
+        format!("{agents}: {cause} (agent {agent} at ({x:.2}, {y:.2}){level}, for {for_secs:.0} s)")
     });
     let more = groups.len().saturating_sub(MOST);
     causes.chain((more > 0).then_some(format!("and {more} more causes: --json lists them")))

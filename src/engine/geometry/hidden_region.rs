@@ -36,6 +36,17 @@ pub struct HiddenRegion {
     angles: [f64; 2],
 }
 
+/// The angles of a stretch of a line `distance` meters away; the line of a long wall crosses the disc from rim to rim,
+/// and takes only one arctangent.
+fn angles_of([from, to]: [f64; 2], distance: f64) -> [f64; 2] {
+    let last = atan2(to, distance);
+    let first = match from == -to {
+        true => -last,
+        false => atan2(from, distance),
+    };
+    [first, last]
+}
+
 impl HiddenRegion {
     /// The region that `wall` hides from an agent at `r_i`; `None` if the agent is behind the wall or out of
     /// reach.
@@ -60,7 +71,7 @@ impl HiddenRegion {
             from,
             to,
             support_radius,
-            angles: [from, to].map(|s| atan2(s, distance)),
+            angles: angles_of([from, to], distance),
         };
         (region.angle() > 0.0).then_some(region)
     }
@@ -91,7 +102,7 @@ impl HiddenRegion {
         if t2 < own_t2 - ANGLE_ROUNDING {
             part.to = (self.distance * tan(t2)).min(self.to);
         }
-        part.angles = [part.from, part.to].map(|s| atan2(s, self.distance));
+        part.angles = angles_of([part.from, part.to], self.distance);
         part
     }
 

@@ -138,7 +138,11 @@ impl ClusterBlock {
             let mut end = start;
             while end < agents.end.min(start + CLUSTER) {
                 let place = grid.place(positions[end]);
-                if place.row != first.row || (place.x - first.x).abs() > widest * reach {
+                let is_far = (place.x - first.x).abs() > widest * reach;
+                if place.row != first.row
+                    || is_far
+                    || !grid.see_alike(positions[start], positions[end])
+                {
                     break;
                 }
                 extent.include(place.x, place.y, grid.height(), (reach, half_curvature));
@@ -150,9 +154,10 @@ impl ClusterBlock {
                     self.runs.push(run.into());
                 }
             }
-            if grid.period().is_some() {
+            if grid.has_images() {
                 let corners = bounds(positions[start..end].iter().copied()).unwrap_or_default();
-                self.runs.extend(grid.across(corners, reach));
+                self.runs
+                    .extend(grid.across(positions[start], corners, reach));
             }
             self.close(start..end);
             start = end;

@@ -2,10 +2,12 @@
 //! of agents in memory.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::Run;
+use crate::levels::{Join, Levels};
 use crate::math::{Vector, bounds};
 use crate::period::Period;
 
@@ -26,6 +28,36 @@ fn extent(positions: &[Vector]) -> [Vector; 2] {
     let corners = some.filter_map(|some| bounds(some.iter().copied()));
     let all = corners.reduce_with(|[low, high], [a, b]| [low.inf(&a), high.sup(&b)]);
     all.unwrap_or_default()
+}
+
+/// The most cells over a building. With the cells at rest, people elsewhere change no sum.
+const CELLS_OF_BUILDING: usize = 1 << 16;
+
+/// The agents beyond a join that can be seen through it.
+#[derive(Debug, Clone)]
+struct Through {
+    join: Join,
+    /// Agents and their distances from the join, meters.
+    agents: Vec<(u32, f64)>,
+}
+
+impl Through {
+    /// Whether a box, given by its lower left and upper right corners, may be at most `radius` meters from the join.
+    fn is_near(&self, [low, high]: [Vector; 2], radius: f64) -> bool {
+        let [a, b] = self.join.line;
+        let (before, after) = (a.inf(&b) - high, low - a.sup(&b));
+        before.max().max(after.max()) <= radius
+    }
+
+    /// The agents at most `radius` meters from the join.
+    fn within(&self, radius: f64) -> impl Iterator<Item = Run> + '_ {
+        let all = self.agents.iter();
+        all.filter(move |(_, distance)| *distance <= radius)
+            .map(|&(agent, _)| Run {
+                agents: agent..agent + 1,
+                laps: -self.join.to,
+            })
+    }
 }
 
 /// A position in a grid.
@@ -51,6 +83,9 @@ pub struct Grid {
     rows: usize,
     /// Repeats the cells.
     period: Option<Period>,
+    levels: Option<Arc<Levels>>,
+    /// What is seen through each of their joins.
+    through: Vec<Through>,
     /// The first agent of each cell, row by row; the last entry is the number of agents.
     start: Vec<u32>,
     /// The cell of each agent before the sort: memory that every sort needs.
@@ -67,6 +102,8 @@ impl Default for Grid {
             columns: 1,
             rows: 3,
             period: None,
+            levels: None,
+            through: Vec::new(),
             start: vec![0; 4],
             cell_of: Vec::new(),
         }
@@ -74,6 +111,14 @@ impl Default for Grid {
 }
 
 impl Grid {
+    /// A grid over levels, or over wherever agents are.
+    pub fn on(levels: Option<Arc<Levels>>) -> Self {
+        Self {
+            levels,
+            ..Self::default()
+        }
+    }
+
     /// Lays a grid with rows of at least `height` meters over `positions`, and finds the order that sorts them by cell.
     /// The sort is stable. All positions lie in the `period`, if there is one.
     pub fn rebuild(
@@ -84,7 +129,10 @@ impl Grid {
         order: &mut Vec<u32>,
     ) {
         self.period = period;
-        let [low, high] = extent(positions);
+        let [low, high] = match &self.levels {
+            Some(levels) => levels.extent(),
+            None => extent(positions),
+        };
         self.size_cells(high - low, positions.len(), height);
         self.origin = low - Vector::new(0.0, self.height);
 
@@ -115,16 +163,82 @@ impl Grid {
         self.cell_of = cell_of;
     }
 
+    /// Finds who is seen through the joins of levels: those beyond a join and at most `radius` meters from it. All
+    /// agents are at the `positions` over which the grid was laid, in order.
+    pub fn look_through(&mut self, positions: &[Vector], radius: f64) {
+        let Some(levels) = self.levels.clone() else {
+            return;
+        };
+        let seen = levels.joins().iter().map(|join| {
+            let way = levels.way(join.to);
+            let [a, b] = join.line.map(|p| p + way);
+            let rows = self.own_rows([a.inf(&b), a.sup(&b)], radius);
+            let agents = rows.flatten().filter_map(|j| {
+                let p = positions[j as usize] - way;
+                let distance = join.distance_squared(p).sqrt();
+                (!join.is_before(p) && distance <= radius).then_some((j, distance))
+            });
+            Through {
+                join: *join,
+                agents: agents.collect(),
+            }
+        });
+        self.through = seen.collect();
+    }
+
+    /// Whether agents at two places see the same agents through joins, as far as they see.
+    pub fn see_alike(&self, p: Vector, other: Vector) -> bool {
+        self.joins_at(p)
+            .iter()
+            .all(|through| through.join.is_beyond(p) == through.join.is_beyond(other))
+    }
+
+    /// What is seen through the joins of the level at `p`.
+    fn joins_at(&self, p: Vector) -> &[Through] {
+        match &self.levels {
+            Some(levels) if !self.through.is_empty() => &self.through[levels.joins_at(p)],
+            _ => &[],
+        }
+    }
+
+    /// The agents that somebody at `viewer` sees through joins, within `radius` meters of a box, and some farther away.
+    fn through_joins(
+        &self,
+        viewer: Vector,
+        corners: [Vector; 2],
+        radius: f64,
+    ) -> impl Iterator<Item = Run> + '_ {
+        let open = self.open_joins(viewer, corners, radius);
+        open.flat_map(move |through| through.within(radius))
+    }
+
+    /// The joins before which somebody at `viewer` is, within `radius` meters of a box.
+    fn open_joins(
+        &self,
+        viewer: Vector,
+        corners: [Vector; 2],
+        radius: f64,
+    ) -> impl Iterator<Item = &Through> {
+        let of_level = self.joins_at(viewer).iter();
+        of_level.filter(move |through| {
+            through.is_near(corners, radius) && !through.join.is_beyond(viewer)
+        })
+    }
+
     /// Doubles the cell size, from the smallest, until the number of cells is within the limit.
     fn size_cells(&mut self, extent: Vector, agents: usize, height: f64) {
-        let most = (agents * CELLS_PER_AGENT).max(FEWEST_CELLS) as f64;
+        let is_at_rest = self.levels.is_some();
+        let most = match is_at_rest {
+            true => CELLS_OF_BUILDING,
+            false => (agents * CELLS_PER_AGENT).max(FEWEST_CELLS),
+        } as f64;
         self.height = height.max(f64::MIN_POSITIVE); // so that doubling makes it grow
         self.width = (self.height / NARROWNESS).max(f64::MIN_POSITIVE);
         // If the extent is NaN, `max` gives the fewest columns or rows; the NaN is found and reported later.
         let columns = |width: f64| ((extent.x / width).floor() + 1.0).max(1.0);
         let rows = |height: f64| ((extent.y / height).floor() + 3.0).max(3.0);
         while columns(self.width) * rows(self.height) > most {
-            if self.width < self.height {
+            if self.width < self.height || (is_at_rest && columns(self.width) > 1.0) {
                 self.width *= 2.0;
             } else {
                 self.width *= 2.0;
@@ -187,11 +301,17 @@ impl Grid {
         self.start[first + column(from)]..self.start[first + column(to) + 1]
     }
 
-    /// The agents in all cells within `radius` meters of a box, given by its lower left and upper right corners, row
-    /// by row, then those seen across the ends of the period. Some agents are out of reach.
-    pub fn rows(&self, corners: [Vector; 2], radius: f64) -> impl Iterator<Item = Run> + '_ {
-        let rows = self.own_rows(corners, radius);
-        rows.map(Run::from).chain(self.across(corners, radius))
+    /// The agents in all cells within `radius` meters of a box, given by its lower left and upper right corners, row by
+    /// row, then those that somebody at `viewer` sees across the ends of the period or through joins. Some agents are
+    /// out of reach.
+    pub fn rows(
+        &self,
+        viewer: Vector,
+        corners: [Vector; 2],
+        radius: f64,
+    ) -> impl Iterator<Item = Run> + '_ {
+        let rows = self.own_rows(corners, radius).map(Run::from);
+        rows.chain(self.across(viewer, corners, radius))
     }
 
     fn own_rows(
@@ -209,8 +329,24 @@ impl Grid {
         })
     }
 
+    /// The agents that are seen elsewhere than they are, within `radius` meters of a box, and some farther away: across
+    /// the ends of the period, and by somebody at `viewer` through joins of levels.
+    pub fn across(
+        &self,
+        viewer: Vector,
+        corners: [Vector; 2],
+        radius: f64,
+    ) -> impl Iterator<Item = Run> + '_ {
+        let of_period = self.across_period(corners, radius);
+        of_period.chain(self.through_joins(viewer, corners, radius))
+    }
+
     /// The agents in all cells within `radius` meters of a box across the ends of the period; none without period.
-    pub fn across(&self, [low, high]: [Vector; 2], radius: f64) -> impl Iterator<Item = Run> + '_ {
+    fn across_period(
+        &self,
+        [low, high]: [Vector; 2],
+        radius: f64,
+    ) -> impl Iterator<Item = Run> + '_ {
         let sides = self.period.map(|period| {
             [-1, 1].map(|laps| {
                 let corners = [low, high].map(|p| p - period.way(laps));
@@ -230,8 +366,9 @@ impl Grid {
     }
 
     /// Appends the agents in all cells that a rectangle reaches into, given by its lower left and upper right corners,
-    /// row by row, then those seen across the ends of the period.
-    pub fn inside(&self, [low, high]: [Vector; 2], found: &mut Vec<Run>) {
+    /// row by row, then those seen across the ends of the period, and those that somebody at `viewer` sees through
+    /// joins of levels.
+    pub fn inside(&self, viewer: Option<Vector>, [low, high]: [Vector; 2], found: &mut Vec<Run>) {
         let [across, up] = [self.columns, self.rows].map(|count| (count - 1) as f64);
         let place = |p: Vector| {
             let cell = (p - self.origin).component_mul(&self.per_meter);
@@ -249,7 +386,12 @@ impl Grid {
             }
         }
         if self.period.is_some() {
-            found.extend(self.across([low, high], 0.0));
+            found.extend(self.across_period([low, high], 0.0));
+        }
+        if let Some(viewer) = viewer {
+            // All that are listed: those in the rectangle may stand far from the join.
+            let open = self.open_joins(viewer, [low, high], 0.0);
+            found.extend(open.flat_map(|through| through.within(f64::INFINITY)));
         }
     }
 
@@ -273,7 +415,7 @@ impl Grid {
         [radius, margin]: [f64; 2],
         found: &mut Vec<Run>,
     ) {
-        for Run { agents, laps } in self.rows([place; 2], radius + margin) {
+        for Run { agents, laps } in self.rows(place, [place; 2], radius + margin) {
             let p = self.seen_from(p, laps);
             let near = agents.filter(|&j| (p - positions[j as usize]).norm() < radius);
             found.extend(near.map(|j| Run {
@@ -285,7 +427,22 @@ impl Grid {
 
     /// The place from which an agent at `p` sees the agents of a run, meters.
     pub fn seen_from(&self, p: Vector, laps: i32) -> Vector {
-        self.period.map_or(p, |period| p - period.way(laps))
+        if laps == 0 {
+            return p;
+        }
+        p - self.way() * f64::from(laps)
+    }
+
+    /// The way of one lap: over the period, or from a level to the next, meters; zero without either.
+    pub fn way(&self) -> Vector {
+        let of_levels = self.levels.as_ref().map(|levels| levels.way(1));
+        let of_period = self.period.map(|period| period.way(1));
+        of_period.or(of_levels).unwrap_or_default()
+    }
+
+    /// Whether agents may be seen elsewhere than they are.
+    pub fn has_images(&self) -> bool {
+        self.period.is_some() || self.levels.is_some()
     }
 
     /// The period of the cells.

@@ -20,11 +20,13 @@ pub use run::Run;
 pub use shifts::{STRIP, Shifts};
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::agents::{Agents, Spare};
 use crate::geometry::Walls;
+use crate::levels::Levels;
 use crate::math::{Vector, bounds};
 use crate::period::Period;
 use shifts::Tiles;
@@ -143,6 +145,14 @@ pub struct Neighbors {
 }
 
 impl Neighbors {
+    /// Neighbors on some levels, also through their joins.
+    pub fn on_levels(levels: Option<Arc<Levels>>) -> Self {
+        Self {
+            grid: Grid::on(levels),
+            ..Self::default()
+        }
+    }
+
     /// Sorts the agents into the cells of a new grid. Invalidates all lists.
     pub fn sort(&mut self, agents: &mut Agents, ranges: Ranges) {
         self.ranges = ranges;
@@ -156,6 +166,8 @@ impl Neighbors {
         grid.rebuild(&agents.position, self.reach, period, order);
         agents.arrange_with(order, &mut self.spare);
         self.sorted_at.clone_from(&agents.position);
+        let radius = ranges.farthest(self.reach) + 2.0 * ranges.drift;
+        self.grid.look_through(&self.sorted_at, radius);
         let strips = agents.len().div_ceil(STRIP);
         self.strips.resize(strips, Shifts::default());
     }
@@ -225,9 +237,18 @@ impl Neighbors {
         }
     }
 
-    /// The period across whose ends agents are neighbors.
-    pub fn period(&self) -> Option<&Period> {
-        self.grid.period()
+    /// The way of one lap of a [`Run`], meters: over the period, or from a level to the next; zero without either.
+    pub fn way(&self) -> Vector {
+        self.grid.way()
+    }
+
+    /// The laps from an agent to the image that is nearest to another, which is `difference` away from it, meters.
+    pub fn nearest_laps(&self, difference: Vector) -> i32 {
+        let way = self.way();
+        match way.norm_squared() {
+            0.0 => 0,
+            squared => (difference.dot(&way) / squared).round() as i32,
+        }
     }
 
     /// The neighbors for SPH and contact, and some agents out of range.
@@ -252,7 +273,7 @@ impl Neighbors {
         radius: f64,
     ) -> impl Iterator<Item = Run> + '_ {
         let (places, margin) = self.places(positions, radius);
-        self.grid.rows([places[i]; 2], radius + margin)
+        self.grid.rows(places[i], [places[i]; 2], radius + margin)
     }
 
     /// The places from which agents look for others within `radius` meters in the grid, and how much farther they look,
@@ -267,7 +288,7 @@ impl Neighbors {
         }
     }
 
-    /// The place from which an agent at `p` sees the agents of a run: with a period, they may be seen across its ends.
+    /// The place from which an agent at `p` sees the agents of a run: across the ends of a period, or through a join.
     pub fn seen_from(&self, p: Vector, laps: i32) -> Vector {
         self.grid.seen_from(p, laps)
     }
@@ -284,8 +305,9 @@ impl Neighbors {
         found.clear();
         let (places, margin) = self.places(positions, radius);
         if self.grid.height() <= self.reach {
+            let viewer = places[agents.start];
             let corners = bounds(places[agents].iter().copied()).unwrap_or_default();
-            found.extend(self.grid.rows(corners, radius + margin));
+            found.extend(self.grid.rows(viewer, corners, radius + margin));
             return;
         }
         // Cells had to be made larger than the reach of the lists, so clusters have one agent: list only its
@@ -308,10 +330,11 @@ impl Neighbors {
         found.clear();
         let (places, margin) = self.places(positions, 0.0);
         let margin = Vector::repeat(margin);
+        let viewer = places[agents.start];
         let shifts = agents.map(|i| positions[i] - places[i]);
         let [least, most] = bounds(shifts).unwrap_or_default();
         let moved = [corners[0] - most - margin, corners[1] - least + margin];
-        self.grid.inside(moved, found);
+        self.grid.inside(Some(viewer), moved, found);
         if self.grid.height() <= self.reach {
             return;
         }
@@ -334,7 +357,8 @@ impl Neighbors {
     pub fn in_rectangle(&self, [low, high]: [Vector; 2]) -> Vec<Run> {
         let margin = Vector::repeat(self.travelled * (1.0 + 1e-9)); // rounding
         let mut found = Vec::new();
-        self.grid.inside([low - margin, high + margin], &mut found);
+        let around = [low - margin, high + margin];
+        self.grid.inside(None, around, &mut found);
         found
     }
 

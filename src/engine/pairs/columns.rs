@@ -7,7 +7,6 @@ use super::{dispatch, level};
 use crate::agents::Agents;
 use crate::math::Vector;
 use crate::neighbors::{BLOCK, TASK};
-use crate::period::Period;
 
 /// One array per quantity, in the agents' order, padded by [`LANES`] entries so that the last vector load stays in
 /// bounds.
@@ -68,10 +67,10 @@ impl<R: Real> Columns<R> {
         &mut self,
         agents: &Agents,
         unit: f64,
-        period: Option<&Period>,
+        way: Vector,
         reach: impl Fn(usize) -> Reach + Sync,
     ) {
-        self.bodies.take(agents, unit, period, reach);
+        self.bodies.take(agents, unit, way, reach);
         reset(&mut self.volume, agents);
         reset(&mut self.pressure, agents);
     }
@@ -84,12 +83,11 @@ impl<R: Real> Bodies<R> {
         &mut self,
         agents: &Agents,
         unit: f64,
-        period: Option<&Period>,
+        way: Vector,
         reach: impl Fn(usize) -> Reach + Sync,
     ) {
         self.unit = unit;
-        let way: [f64; 2] = period.map_or([0.0; 2], |period| period.way(1).into());
-        self.period = way.map(|meters| R::coordinate(meters, 1.0 / unit));
+        self.period = [way.x, way.y].map(|meters| R::coordinate(meters, 1.0 / unit));
         reset(&mut self.x, agents);
         reset(&mut self.y, agents);
         reset(&mut self.velocity_x, agents);

@@ -25,7 +25,6 @@ pub use vectors::{VARIABLE, Vectors, level};
 
 use crate::agents::Agents;
 use crate::math::Vector;
-use crate::period::Period;
 
 /// The precision of sums over pairs; everything else is in double precision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -92,14 +91,14 @@ impl Packed {
         &mut self,
         agents: &Agents,
         extent: f64,
-        period: Option<&Period>,
+        way: Vector,
         reach: impl Fn(usize) -> Reach + Sync,
     ) {
         match self {
-            Self::Double(columns) => columns.take_bodies(agents, 1.0, period, reach),
+            Self::Double(columns) => columns.take_bodies(agents, 1.0, way, reach),
             Self::Mixed(columns) => {
                 let unit = extent / f64::from(1_u32 << 31);
-                columns.take_bodies(agents, unit, period, reach);
+                columns.take_bodies(agents, unit, way, reach);
             }
         }
     }

@@ -45,6 +45,9 @@ pub enum WayError {
     /// This point of a goal lies in a wall or outside of the floor.
     #[error("({}, {}) is not on the floor", .0.x, .0.y)]
     NotOnFloor(Vector),
+    /// The floors of the two levels differ along the join that begins here.
+    #[error("the floors of two levels differ along the join at ({}, {})", .0.x, .0.y)]
+    Join(Vector),
     /// There are too many goals.
     #[error("agents walk to {MOST_GOALS} different goals already; give them common ones")]
     TooMany,

@@ -143,7 +143,7 @@ impl Scene {
         let heeds = self.headings().any(|law| law.gap.narrowing_share != 0.0);
         let routes = self.routes.as_ref().filter(|_| heeds);
         routes.map_or_else(Narrowings::default, |routes| {
-            Narrowings::of(&routes.floor.mesh, WIDEST_NARROWING)
+            Narrowings::of(routes.floor.whole(), WIDEST_NARROWING)
         })
     }
 

@@ -37,7 +37,9 @@ impl Simulation {
             ListPolicy::Complete => self.derived.neighbors.are_stale(),
             ListPolicy::Coarse => self.crowd.decides(),
         };
-        if self.crowd.changed || stale || self.has_left_period() {
+        // On levels, people elsewhere must not decide when others are sorted, and with it the order of their sums.
+        let on_levels = self.fixed.scene.levels.is_some();
+        if self.crowd.changed || stale || self.has_left_period() || on_levels {
             self.sort_agents();
         }
         let needs = &self.fixed.needs;
@@ -50,7 +52,7 @@ impl Simulation {
         if neighbors.near().is_empty() || packed.is_empty() {
             self.stages.time(Stage::Neighbors, || {
                 neighbors.list_agents();
-                packed.take_bodies(agents, neighbors.extent(), neighbors.period(), |i| {
+                packed.take_bodies(agents, neighbors.extent(), neighbors.way(), |i| {
                     fixed.blend(agents, i).reach()
                 });
             });
@@ -68,11 +70,14 @@ impl Simulation {
     }
 
     /// Sorts the agents into cells, and lists the walls near them. Agents that have left the period reenter at its
-    /// other end.
+    /// other end, and those that have walked across a join are moved to the next level.
     pub(super) fn sort_agents(&mut self) {
         let (fixed, crowd, derived) = (&self.fixed, &mut self.crowd, &mut self.derived);
         if let Some(period) = &fixed.scene.period {
             crowd.agents.wrap(period);
+        }
+        if let Some(levels) = &fixed.scene.levels {
+            crowd.agents.change_levels(levels);
         }
         let ranges = fixed.scene.ranges(&fixed.needs, &crowd.agents);
         let neighbors = &mut derived.neighbors;
@@ -143,7 +148,8 @@ impl Simulation {
                 None => &agents.goal,
             };
             let needs = &self.fixed.needs;
-            let alike = !needs.paces && !needs.directions && agents.walk_alike();
+            let is_flat = scene.levels.is_none();
+            let alike = !needs.paces && !needs.directions && is_flat && agents.walk_alike();
             if alike && agents.trip.is_empty() {
                 let speed = scene.preferred_speed;
                 return straight_at(speed, &agents.position, aims, preferred);
@@ -159,7 +165,10 @@ impl Simulation {
                     return;
                 }
                 let heading = scene.groups[usize::from(agents.group[i])].direction;
-                *wish = heading.unwrap_or_else(|| direction(aims[i] - position)) * pace;
+                let heading = heading.unwrap_or_else(|| direction(aims[i] - position));
+                let levels = scene.levels.as_ref();
+                let slope = levels.map_or(1.0, |levels| levels.speed_factor(position, heading));
+                *wish = heading * (pace * slope);
             });
         });
     }

@@ -21,7 +21,7 @@ impl Simulation {
             return found; // the scene has no such forces
         }
         let mut columns = Columns::<f64>::default();
-        columns.take_bodies(agents, 1.0, frame.neighbors.period(), |i| {
+        columns.take_bodies(agents, 1.0, frame.neighbors.way(), |i| {
             self.blend(i).reach()
         });
         columns.bodies.take_motions(agents);

@@ -67,7 +67,7 @@ pub const NUMBERS: [Number; 8] = [
         "the highest SPH density at an agent: the kernel of the model (Eq. 13) with a support radius of 1 m over the \
          agent itself and the agents and walls around it; a person of mass 1 has 1.27 P/m² alone. \
          Observed in every coarse frame",
-        |run| run.highest_density.map(|highest| highest.density_per_m2),
+        |run| Some(run.highest_density.as_ref()?.density_per_m2),
     ),
     ("stuck", "agents at the end that make no headway", |run| {
         Some(run.stuck as f64)
@@ -106,6 +106,11 @@ pub fn overview(run: &Summary, reason: &str) -> Vec<Fact> {
     facts
 }
 
+/// The level of a place, if it lies in a building.
+fn on_level(level: Option<&str>) -> String {
+    level.map_or(String::new(), |level| format!(" on {level}"))
+}
+
 fn place_of_highest(highest: &HighestDensity) -> Fact {
     let ([x, y], secs) = (highest.at, highest.at_secs);
     let large = highest
@@ -113,7 +118,10 @@ fn place_of_highest(highest: &HighestDensity) -> Fact {
         .map_or(String::new(), |large| format!("; {large}"));
     Fact::new(
         "its place and time",
-        format!("({x:.2}, {y:.2}) m, {secs:.2} s"),
+        format!(
+            "({x:.2}, {y:.2}) m{}, {secs:.2} s",
+            on_level(highest.level.as_deref())
+        ),
         format!("place of the agent with the highest density, and when it had it first{large}"),
     )
 }
@@ -179,7 +187,8 @@ pub fn stuck(run: &Summary) -> Vec<Block> {
         .column("likely cause", |group| group.cause.as_str())
         .column("one of them", |group| group.agent)
         .column("its place [m]", |group| {
-            format!("({:.2}, {:.2})", group.at[0], group.at[1])
+            let level = on_level(group.level.as_deref());
+            format!("({:.2}, {:.2}){level}", group.at[0], group.at[1])
         })
         .fixed("for [s]", 0, |group| group.for_secs)
         .table();

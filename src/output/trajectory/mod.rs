@@ -116,6 +116,9 @@ impl Trajectory {
         fps: f64,
     ) -> Result<Self, TrajectoryError> {
         let format = Format::of(path)?;
+        if format != Format::Csv && simulation.scene().levels.is_some() {
+            return Err(TrajectoryError::Building(path.to_owned()));
+        }
         let clock = *simulation.frame().clock;
         let every = frames_between(&clock, fps)?;
         let fps = 1.0 / clock.time_at(every);

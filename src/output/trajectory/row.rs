@@ -50,15 +50,15 @@ pub const COLUMNS: [(&str, &str, Value); 27] = [
     ("id", "the agent, from 0 in the order of entry", Count(|row| row.id().into())),
     ("group", "name of the agent's group", Name(|row| Some(&row.group().name))),
     ("push", "name of the push that the agent takes part in", Name(|row| row.push())),
-    ("pos_x", "position, m", Number(|row| row.position().x)),
-    ("pos_y", "position, m", Number(|row| row.position().y)),
+    ("pos_x", "position, m", Number(|row| row.in_building(row.position()).x)),
+    ("pos_y", "position, m", Number(|row| row.in_building(row.position()).y)),
     ("vel_x", "velocity, m/s", Number(|row| row.velocity().x)),
     ("vel_y", "velocity, m/s", Number(|row| row.velocity().y)),
     ("speed", "speed, m/s", Number(|row| row.speed())),
     ("ori_x", "direction in which the agent faces, of length 1", Number(|row| row.orientation().x)),
     ("ori_y", "direction in which the agent faces, of length 1", Number(|row| row.orientation().y)),
-    ("goal_x", "goal, m", Number(|row| row.agents.goal[row.i].x)),
-    ("goal_y", "goal, m", Number(|row| row.agents.goal[row.i].y)),
+    ("goal_x", "goal, m", Number(|row| row.in_building(row.agents.goal[row.i]).x)),
+    ("goal_y", "goal, m", Number(|row| row.in_building(row.agents.goal[row.i]).y)),
     ("radius", "radius of the body, m", Number(|row| row.agents.radius[row.i])),
     ("mass", "mass, 1 = an average person", Number(|row| row.mass())),
     ("density", "density, P/m²", Number(|row| row.density())),
@@ -72,6 +72,20 @@ pub const COLUMNS: [(&str, &str, Value); 27] = [
     ("preferred_vel_y", "preferred velocity, m/s", Number(|row| row.fields.preferred_velocity[row.i].y)),
     ("acc_x", "acceleration, m/s²", Number(|row| row.fields.acceleration[row.i].x)),
     ("acc_y", "acceleration, m/s²", Number(|row| row.fields.acceleration[row.i].y)),
+];
+
+/// The columns of buildings.
+const OF_LEVELS: [(&str, &str, Value); 2] = [
+    (
+        "level",
+        "name of the agent's level",
+        Name(|row| row.level()),
+    ),
+    (
+        "z",
+        "height of the floor at the agent, m",
+        Number(|row| row.height()),
+    ),
 ];
 
 impl<'a> Row<'a> {
@@ -92,6 +106,22 @@ impl<'a> Row<'a> {
     /// r_i, meters.
     pub fn position(&self) -> Vector {
         self.agents.position[self.i]
+    }
+
+    /// A place of the plane in the building, meters: on one level, the place itself.
+    fn in_building(&self, place: Vector) -> Vector {
+        let levels = self.scene.levels.as_ref();
+        levels.map_or(place, |levels| levels.in_building(place))
+    }
+
+    fn level(&self) -> Option<&'a str> {
+        let levels = self.scene.levels.as_ref()?;
+        Some(&levels.all()[levels.level(self.position())].name)
+    }
+
+    fn height(&self) -> f64 {
+        let levels = self.scene.levels.as_ref();
+        levels.map_or(0.0, |levels| levels.height(self.position()))
     }
 
     /// v_i, m/s.
@@ -154,7 +184,12 @@ pub fn columns(scene: &Scene) -> Vec<(&'static str, &'static str, Value)> {
         let shown = force.shown().iter().enumerate();
         shown.map(move |(k, shown)| (shown.name, shown.about, OfForce(number, k)))
     });
-    COLUMNS.into_iter().chain(of_forces).collect()
+    let of_levels = OF_LEVELS.into_iter().filter(|_| scene.levels.is_some());
+    COLUMNS
+        .into_iter()
+        .chain(of_levels)
+        .chain(of_forces)
+        .collect()
 }
 
 impl Serialize for Row<'_> {

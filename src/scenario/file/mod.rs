@@ -19,6 +19,7 @@ use crate::keys::curve::Curve;
 use crate::keys::from::FromData;
 use crate::keys::goals::{Aim, WayFinding};
 use crate::keys::interventions::Intervention;
+use crate::keys::levels::{Join, Level};
 use crate::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE, LONGEST_TIME, STRONGEST};
 use crate::keys::names::{optional_word, word};
 use crate::keys::numerics::{IntegratorChoice, TimeStep};
@@ -138,6 +139,11 @@ pub struct File {
     /// no area, such as two points, are a wall of 1 cm.
     #[schemars(schema_with = "obstacles")]
     pub obstacles: Vec<Outline>,
+    /// The levels of a building, instead of `walkable_area` and `obstacles`. Places, people, labels and measurements
+    /// then have a `level`.
+    pub levels: Vec<Level>,
+    /// The edges at which people walk from one level to another.
+    pub joins: Vec<Join>,
     /// The scene repeats itself without end.
     pub periodic: Option<Periodic>,
     /// The goal of agents that have none of their own. Default in a periodic scene: along the axis.

@@ -10,13 +10,57 @@ use schemars::transform::RecursiveTransform;
 use serde_json::{Value, json};
 
 use crate::file::File;
+use crate::keys::levels::ON_LEVELS;
 use crate::keys::names::{OLD_KEYS, OldKey};
 
 static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
     let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(tidy));
     let schema = settings.into_generator().into_root_schema_for::<File>();
-    schema.to_value()
+    let mut schema = schema.to_value();
+    add_levels(&mut schema);
+    schema
 });
+
+/// Adds the key `level` to everything that lies on a level of a building: reading takes it away.
+fn add_levels(schema: &mut Value) {
+    let level = json!({
+        "description": "In a building: the name of the level on which it lies. See `levels`.",
+        "type": ["string", "null"],
+    });
+    let mut objects: Vec<String> = Vec::new();
+    for list in ON_LEVELS {
+        let items = &schema["properties"][list]["items"];
+        match items["$ref"].as_str() {
+            Some("#/$defs/Measurement") => {
+                let kinds = schema["$defs"]["Measurement"]["oneOf"].as_array();
+                let keys = kinds.into_iter().flatten().map(|kind| &kind["properties"]);
+                let keys = keys
+                    .filter_map(Value::as_object)
+                    .flat_map(|keys| keys.values());
+                let named = keys.filter_map(|key| key["$ref"].as_str());
+                let has_place = |name: &&str| {
+                    let own = schema.pointer(name.trim_start_matches('#'));
+                    own.is_some_and(|own| {
+                        PLACES
+                            .iter()
+                            .any(|key| own["properties"].get(key).is_some())
+                    })
+                };
+                objects.extend(named.filter(has_place).map(str::to_owned));
+            }
+            Some(name) => objects.push(name.to_owned()),
+            None => objects.push(format!("#/properties/{list}/items")),
+        }
+    }
+    for name in objects {
+        if let Some(object) = schema.pointer_mut(name.trim_start_matches('#')) {
+            object["properties"]["level"] = level.clone();
+        }
+    }
+}
+
+/// The keys by which a measurement lies somewhere.
+const PLACES: [&str; 3] = ["region", "line", "area"];
 
 /// The JSON Schema (draft 2020-12) of scenario files. Every file that the program accepts is valid. The schema does
 /// not check relations between values (order of corners, at least one goal).

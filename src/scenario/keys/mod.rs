@@ -8,6 +8,7 @@ pub mod distribution;
 pub mod from;
 pub mod goals;
 pub mod interventions;
+pub mod levels;
 pub mod limits;
 pub mod names;
 pub mod numerics;

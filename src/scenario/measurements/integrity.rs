@@ -107,13 +107,15 @@ impl Watched {
         let agents = frame.agents;
         let new = || Fence::new(&simulation.scene().walls);
         let fence = self.fence.get_or_insert_with(new);
-        let period = simulation.scene().period;
+        let scene = simulation.scene();
+        let has_images = scene.period.is_some() || scene.levels.is_some();
         self.last.resize(agents.entered() as usize, None);
         for (&id, &position) in agents.id.iter().zip(&agents.position) {
             let last = self.last[id as usize].replace(position);
-            // Across the ends of a period, the last position is the image next to this one.
-            let last = last.map(|last| {
-                period.map_or(last, |period| position - period.shortest(position - last))
+            // Across the ends of a period or a join, the last position is the image next to this one.
+            let last = last.map(|last| match has_images {
+                true => position - scene.walked(last, position),
+                false => last,
             });
             let passed = match last {
                 None => fence.encloses(position),

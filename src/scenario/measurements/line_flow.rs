@@ -190,18 +190,11 @@ struct Crossing<'a> {
 }
 
 impl Crossing<'_> {
-    /// The shortest way, also across the end of the period.
-    fn way(&self, from: Vector, to: Vector) -> Vector {
-        let way = to - from;
-        let period = self.scene.period;
-        period.map_or(way, |period| period.shortest(way))
-    }
-
     /// Moves a track to its next position. Returns after which part of the move it passed the line, if it did.
     fn passed(&self, track: &mut Track, position: Vector) -> Option<f64> {
         // A move across the end of the period is seen at both ends.
         let last = std::mem::replace(&mut track.last, position);
-        let way = self.way(last, position);
+        let way = self.scene.walked(last, position);
         let leaving = self.line.crossed(last, last + way);
         let crossed = leaving.or_else(|| self.line.crossed(position - way, position));
         if let Some((part, is_forward)) = crossed {
@@ -292,7 +285,7 @@ impl LineFlow {
                     && is_inside(middle)
                     && let Some(before) = seen.samples.last_mut()
                 {
-                    let way = crossing.way(first, position);
+                    let way = crossing.scene.walked(first, position);
                     before.moving += 1;
                     before.speeds += way.norm() / (2.0 * every as f64 * step);
                 }

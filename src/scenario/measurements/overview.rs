@@ -10,7 +10,7 @@ use engine::kernel;
 use engine::simulation::Simulation;
 
 /// The highest density of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HighestDensity {
     /// The SPH density at an agent, P/m².
     pub density_per_m2: f64,
@@ -18,6 +18,9 @@ pub struct HighestDensity {
     pub at_secs: f64,
     /// The position of the agent, meters.
     pub at: [f64; 2],
+    /// In a building: the name of the level there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<String>,
     /// Its id.
     pub agent: u32,
     /// Its mass m_i, 1 for a person of average size.
@@ -61,7 +64,7 @@ impl Overview {
 
     /// The highest density; `None` if no force needs densities.
     pub fn highest(&self) -> Option<HighestDensity> {
-        self.highest
+        self.highest.clone()
     }
 
     /// The longest queue before each passage, the longest one first.
@@ -72,7 +75,8 @@ impl Overview {
     fn observe_density(&mut self, simulation: &Simulation) {
         let frame = simulation.frame();
         let densities = &frame.fields.density;
-        let mut most = self.highest.map_or(0.0, |highest| highest.density_per_m2);
+        let highest = self.highest.as_ref();
+        let mut most = highest.map_or(0.0, |highest| highest.density_per_m2);
         let mut found = None;
         // A frame of a damaged checkpoint may have no densities.
         let known = frame.agents.present().filter(|&i| i < densities.len());
@@ -86,6 +90,7 @@ impl Overview {
                 density_per_m2: most,
                 at_secs: frame.clock.time(),
                 at: frame.agents.position[i].into(),
+                level: None,
                 agent: frame.agents.id[i],
                 mass: frame.agents.mass[i],
             });

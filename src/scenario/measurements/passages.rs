@@ -49,7 +49,7 @@ impl Openings {
         };
         let doors = Self::doors(scene);
         Self {
-            all: doors.all.and_openings(&routes.floor.mesh, WIDEST),
+            all: doors.all.and_openings(routes.floor.whole(), WIDEST),
             doors: doors.doors,
         }
     }

@@ -35,6 +35,9 @@ pub struct LongestQueue {
     /// The middle of the passage, meters.
     #[serde(default)]
     pub at: [f64; 2],
+    /// In a building: the name of the level there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<String>,
     /// The largest number of agents at one time; of a queue with a line, of those who have joined it.
     pub agents: u32,
     /// The first time with this number, seconds.
@@ -176,6 +179,7 @@ impl Queues {
                     (None, _) => format!("({}, {})", at.x, at.y),
                 },
                 at: at.into(),
+                level: None,
                 agents: queue.agents,
                 at_secs: queue.at_secs,
                 density_per_m2: queue.density,

@@ -156,9 +156,7 @@ impl Measure for Walks {
             }
             if is_due && region.is_none_or(|region| region.contains(position)) {
                 walk.secs += step;
-                let step = position - *before;
-                let step = scene.period.map_or(step, |period| period.shortest(step));
-                walk.meters += step.norm();
+                walk.meters += scene.walked(*before, position).norm();
             }
             *before = position;
         }

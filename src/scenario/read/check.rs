@@ -17,7 +17,7 @@ use crate::read::draft::{Draft, Inputs};
 use crate::read::parsed::parsed;
 use crate::read::plans::Plans;
 use crate::read::scenario::Scenario;
-use crate::read::{curves, data, late, plans, preset};
+use crate::read::{curves, data, late, levels, plans, preset};
 use crate::scene::need::Need;
 use crate::scene::origin::Items;
 use crate::scene::people::Population;
@@ -44,7 +44,16 @@ impl Draft {
         let mut notes = Vec::new();
         let (mut plans, mut files) = Plans::take(&mut document, folder, &mut notes)?;
         files.extend(curves::fill(&mut document, folder)?);
-        let mut keys = Self::check_keys(&document)?;
+        let laid_out = levels::side_by_side(&document);
+        if !matches!(laid_out, Ok(None)) {
+            // What is wrong with single keys comes first.
+            range::check(&document).map_err(|problem| meant::clearer(problem, &document))?;
+        }
+        let building = laid_out?;
+        let plane = building
+            .as_ref()
+            .map_or(&document, |building| &building.document);
+        let mut keys = Self::check_keys(plane)?;
         let places = std::mem::take(&mut plans.places);
         plans.enter(&mut keys);
         files.extend(data::fill(&mut document, &mut keys, folder, &mut notes)?);
@@ -54,6 +63,7 @@ impl Draft {
             files,
             places,
             keys,
+            building,
             notes,
             need,
             inputs: Inputs::default(),
@@ -118,13 +128,20 @@ impl Draft {
     pub(super) fn built(self, path: &Path, last: f64) -> Result<Scenario, Problem> {
         let keys = &self.keys;
         periodic::check_keys(keys)?;
-        let Surroundings { solids, behind } = Surroundings::of(keys)?;
+        let Surroundings { solids, mut behind } = Surroundings::of(keys)?;
+        let building = self.building.as_ref();
+        behind.extend(
+            building
+                .into_iter()
+                .flat_map(|building| building.seen.clone()),
+        );
         let without_effect = surroundings::without_effect(keys);
         let default = ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned()));
         let choice = keys.profile.as_ref().unwrap_or(&default);
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
         let mut scene = empty_scene(keys, solids);
         scene.behind = behind;
+        scene.levels = building.map(|building| building.levels.clone());
         let mut notes = self.notes.clone();
         let populated = self.populate(&mut scene, &blend, &mut notes);
         let items = populated.map_err(|problem| likely_cause(problem, &without_effect))?;

@@ -10,10 +10,12 @@ use crate::file::File;
 use crate::floor_plan::Place;
 use crate::jupedsim;
 use crate::kinds;
+use crate::read::levels::{SideBySide, without_level};
 use crate::read::plans::PlanFile;
 use crate::read::scenario::Scenario;
 use crate::read::setting::Setting;
 use crate::read::{document, late, plans};
+use crate::scene::levels;
 use crate::scene::need::Need;
 use crate::scene::surroundings::WALKABLE_AREA;
 use crate::trajectories::Tracks;
@@ -28,6 +30,8 @@ pub struct Draft {
     /// What its floor plans name.
     pub(super) places: Vec<Place>,
     pub(super) keys: File,
+    /// A building with its levels side by side: `keys` are those of its plane.
+    pub(super) building: Option<SideBySide>,
     /// Notes on these files, for readers of the results.
     pub(super) notes: Vec<String>,
     pub(super) need: Need,
@@ -121,12 +125,20 @@ impl Draft {
         let inputs = std::mem::take(&mut self.inputs);
         let is_web_app = self.is_web_app;
         let translated = is_web_app.then(|| self.document.clone());
+        let levels = self
+            .building
+            .as_ref()
+            .map(|building| building.levels.clone());
+        let in_building = |text: &str| match &levels {
+            Some(levels) => levels::in_building(levels, text),
+            None => text.to_owned(),
+        };
         let ends = self.ends(inputs.without.as_ref());
         let late = self.late(ends);
         let built = self.built(Path::new(&inputs.file), ends[1]);
         let mut scenario = built.map_err(|problem| {
             let named = translated.iter().fold(problem, jupedsim::named);
-            inputs.blame(named)
+            inputs.blame(Problem::new(named.path, in_building(&named.reason)))
         })?;
         scenario.notes.extend(late);
         scenario.notes.extend(late::idle(&scenario.scene, ends));
@@ -136,7 +148,8 @@ impl Draft {
         scenario
             .notes
             .retain(|note| !is_web_app || !jupedsim::is_about_sides(note));
-        scenario.notes = scenario.notes.iter().map(|note| tidy(note)).collect();
+        let notes = scenario.notes.iter();
+        scenario.notes = notes.map(|note| in_building(&tidy(note))).collect();
         scenario.changes = inputs.changes();
         Ok(scenario)
     }
@@ -176,7 +189,8 @@ impl Inputs {
             if value.is_string() && plans::KEYS.contains(&key.as_str()) {
                 continue; // the name of a file
             }
-            let problem = Draft::check_keys(&json!({ key: value })).err();
+            let alone = without_level(json!({ key: value }));
+            let problem = Draft::check_keys(&alone).err();
             // Other settings may mend what lies elsewhere.
             if let Some(problem) = problem.filter(|problem| problem.seen_from(path).is_some()) {
                 let file = self.file.clone();

@@ -8,6 +8,7 @@ pub mod draft;
 pub mod drawing;
 pub mod effective;
 pub mod late;
+pub mod levels;
 pub mod parsed;
 pub mod places;
 pub mod plans;

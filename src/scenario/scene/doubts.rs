@@ -83,7 +83,9 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64, last: f64) -> Vec<String
 /// A note on crowds on a floor plan with several ways, whose agents take the shortest one because neither the file nor
 /// a journey says how they choose.
 fn crowded(keys: &File, scene: &Scene, entering: u64) -> Option<String> {
-    let is_open = keys.walkable_area.is_some() && keys.route_choice.is_none();
+    // In a building no choice by time is known.
+    let is_floor = keys.walkable_area.is_some() && keys.levels.is_empty();
+    let is_open = is_floor && keys.route_choice.is_none();
     let rings = scene.walls.obstacles().iter().flat_map(|one| one.rings());
     let exits = scene.groups.iter().any(|group| {
         let to = group
@@ -168,7 +170,11 @@ fn on_legs(keys: &File, scene: &Scene) -> Option<String> {
 /// A note on a floor that is so large or empty that its unit may not be meters. Its size is that of the plan, without
 /// the floors behind exits and entrances.
 fn floor(keys: &File, walls: &Walls, entering: u64) -> Option<String> {
-    let rings = keys.walkable_area.iter().flatten().flatten();
+    let of_levels = keys.levels.iter().flat_map(|level| &level.walkable_area);
+    // In the plane, levels lie side by side.
+    let whole = keys.walkable_area.iter().flatten();
+    let of_floor = whole.filter(|_| keys.levels.is_empty());
+    let rings = of_floor.chain(of_levels).flatten();
     let corners = rings.flat_map(|ring| ring.0.iter().map(|&corner| corner.into()));
     let [low, high] = bounds(corners)?;
     let extent = high - low;

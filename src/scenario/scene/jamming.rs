@@ -25,7 +25,7 @@ pub fn note(scene: &Scene, entering: u64) -> Option<String> {
     if step < SHORT_STEP || entering < FEWEST {
         return None;
     }
-    let mesh = &scene.routes.as_ref()?.floor.mesh;
+    let mesh = scene.routes.as_ref()?.floor.whole();
     let [a, b] = Narrowings::default()
         .and_openings(mesh, NARROW)
         .narrowest()?;

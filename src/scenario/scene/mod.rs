@@ -15,6 +15,7 @@ pub mod interventions;
 pub mod jamming;
 pub mod journeys;
 mod leaving;
+pub mod levels;
 pub mod maps;
 pub mod need;
 pub mod numerics;

@@ -123,7 +123,8 @@ fn routes(
     notes.extend(doors::doubled(places));
     prepared.check_bodies(&routes.floor, &stops, notes)?;
     // Where nothing can stand between a place of the floor and a goal, agents walk straight.
-    let is_needed = has_journeys || !keys.doors.is_empty() || routes.bend();
+    let is_needed =
+        has_journeys || !keys.doors.is_empty() || scene.levels.is_some() || routes.bend();
     Ok(is_needed.then(|| Arc::new(routes)))
 }
 
@@ -134,10 +135,15 @@ fn check_navigation(keys: &File, scene: &Scene, has_journeys: bool) -> Result<()
             "no agent walks to an exit: all have goals; remove `goal`, or give agents a `journey`";
         return Err(Problem::new("exits", reason));
     }
+    if scene.levels.is_some() && scene.by_time() {
+        let reason = "`quickest` routes are not known in buildings yet; remove it";
+        return Err(Problem::new("route_choice", reason));
+    }
     if keys.navigation == WayFinding::Straight {
         for (key, is_given) in [
             ("route_choice", scene.by_time()),
             ("doors", !keys.doors.is_empty()),
+            ("levels", scene.levels.is_some()),
         ] {
             if is_given {
                 let reason = "needs `navigation` `paths`; remove it, or `navigation`";
@@ -159,7 +165,12 @@ pub fn floor(scene: &Scene, width: f64) -> Result<Routes, Problem> {
 }
 
 fn floor_of(scene: &Scene, starts: &[Start], width: f64) -> Result<Floor, Problem> {
-    Floor::new(&areas(scene, starts)?, width).map_err(unusable)
+    let areas = areas(scene, starts)?;
+    let floor = match &scene.levels {
+        Some(levels) => Floor::on_levels(&areas, width, levels.clone()),
+        None => Floor::new(&areas, width),
+    };
+    floor.map_err(unusable)
 }
 
 /// The goals that may need path maps: all of them.

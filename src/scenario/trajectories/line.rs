@@ -72,6 +72,11 @@ impl Columns {
         if frame.or(time).is_none() {
             return Ok(None);
         }
+        if find(&["level"]).is_some() && find(&["pos_x"]).is_some() {
+            let reason = "the people are on several levels of a building, side by side or above each other: keep \
+                          those of one `level`, and leave that column out";
+            return Err(reason.to_owned());
+        }
         let columns = Self {
             id,
             frame,

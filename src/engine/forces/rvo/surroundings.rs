@@ -140,18 +140,12 @@ impl Surroundings for Around<'_> {
             agents, neighbors, ..
         } = self.frame;
         let (i, j) = (self.i, number as usize);
-        let offset = |laps: i32| agents.position[j] - neighbors.seen_from(agents.position[i], laps);
-        // The period is at least twice the avoidance radius, so only the nearest image can be in reach.
-        let mut nearest = offset(0);
-        if neighbors.period().is_some() {
-            for offset in [-1, 1].map(offset) {
-                if offset.norm_squared() < nearest.norm_squared() {
-                    nearest = offset;
-                }
-            }
-        }
+        let [own, other] = [i, j].map(|agent| agents.position[agent]);
+        // A period, and the spacing of levels, is at least twice the avoidance radius: only the nearest image can be in
+        // reach.
+        let laps = neighbors.nearest_laps(own - other);
         MovingDisc {
-            offset: nearest,
+            offset: other - neighbors.seen_from(own, laps),
             velocity: agents.velocity[j],
             reach: agents.radius[i] + agents.radius[j],
         }

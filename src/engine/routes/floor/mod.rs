@@ -9,6 +9,7 @@ mod mesh;
 mod narrow;
 mod narrowings;
 mod passage;
+mod sheets;
 mod triangulation;
 
 pub use corner::{Bend, Corner, Turn};
@@ -19,19 +20,25 @@ pub use narrow::{Narrow, narrow};
 pub use narrowings::{Narrowing, Narrowings};
 pub use passage::{Passage, Passages};
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::WayError;
 use crate::geometry::Area;
+use crate::levels::Levels;
 use crate::math::{Vector, bytes_of};
 use grid::Grid;
+use sheets::Sheets;
 
 /// A floor with its corners and the routes between them.
 #[derive(Debug, Clone)]
 pub struct Floor {
-    /// The triangles.
+    /// The triangles; those of several levels at their places in the building.
     pub mesh: Mesh,
-    /// Cells over them.
+    /// The triangles of several levels in the plane.
+    sheets: Option<Sheets>,
+    /// Cells over the triangles in the plane.
     pub grid: Grid,
     /// The corners that shortest routes bend around.
     pub corners: Vec<Corner>,
@@ -59,8 +66,26 @@ impl Floor {
         Ok(Self::of(Mesh::new(areas, least_width)?, least_width))
     }
 
+    /// Prepares the floors of some levels, which lie side by side in the plane and go on for a while behind their
+    /// joins.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), or the floors on both sides of a join differ along it.
+    pub fn on_levels(
+        areas: &[Area],
+        least_width: f64,
+        levels: Arc<Levels>,
+    ) -> Result<Self, WayError> {
+        let (mesh, sheets) = Mesh::glued(areas, least_width, levels)?;
+        Ok(Self::prepared(mesh, Some(sheets), least_width))
+    }
+
     /// Prepares a triangulation whose narrower passages are closed already.
     pub fn of(mesh: Mesh, least_width: f64) -> Self {
+        Self::prepared(mesh, None, least_width)
+    }
+
+    fn prepared(mesh: Mesh, sheets: Option<Sheets>, least_width: f64) -> Self {
         let corners = Corner::all(&mesh, least_width);
         let mut at = vec![[None; 3]; mesh.triangles().len()];
         for (c, corner) in corners.iter().enumerate() {
@@ -71,8 +96,9 @@ impl Floor {
         let mut floor = Self {
             routes: Vec::new(),
             starts: vec![0],
-            grid: Grid::over(&mesh),
+            grid: Grid::over(sheets.as_ref().map_or(&mesh, |sheets| &sheets.mesh)),
             mesh,
+            sheets,
             places: corners.iter().map(|corner| corner.place).collect(),
             corners,
             at,
@@ -113,7 +139,9 @@ impl Floor {
     pub fn bytes(&self) -> usize {
         let corners = self.corners.iter().map(Corner::bytes).sum::<usize>();
         let lists = bytes_of(&self.routes) + bytes_of(&self.starts) + bytes_of(&self.places);
-        lists + bytes_of(&self.at) + self.grid.bytes() + self.mesh.bytes() + corners
+        let plane = |sheets: &Sheets| sheets.mesh.bytes() + sheets.whole.bytes();
+        let plane = self.sheets.as_ref().map_or(0, plane);
+        lists + bytes_of(&self.at) + self.grid.bytes() + self.mesh.bytes() + plane + corners
     }
 
     /// The number of borders that do not belong to a path map: the points of the mesh, and a ray for each bend.
@@ -139,22 +167,74 @@ impl Floor {
         self.places[bend.corner as usize]
     }
 
-    /// A triangle that contains `p`; `None` outside of the floor.
+    /// The triangles in the plane in which people are.
+    pub fn plane(&self) -> &Mesh {
+        self.sheets
+            .as_ref()
+            .map_or(&self.mesh, |sheets| &sheets.mesh)
+    }
+
+    /// The triangles in the plane, of several levels as their floors go on behind joins.
+    pub fn whole(&self) -> &Mesh {
+        self.sheets
+            .as_ref()
+            .map_or(&self.mesh, |sheets| &sheets.whole)
+    }
+
+    /// The place in the building of somebody at `p` in the plane, meters: of one level, `p` itself.
+    #[inline]
+    pub fn in_building(&self, p: Vector) -> Vector {
+        let sheets = self.sheets.as_ref();
+        sheets.map_or(p, |sheets| sheets.levels.in_building(p))
+    }
+
+    /// Where somebody at `p` in the plane sees a `point` of the building, meters.
+    #[inline]
+    pub fn seen_from(&self, p: Vector, point: Vector) -> Vector {
+        match self.has_levels() {
+            true => point + (p - self.in_building(p)),
+            false => point,
+        }
+    }
+
+    /// Whether two points in the plane lie on the same level.
+    pub fn is_one_level(&self, p: Vector, other: Vector) -> bool {
+        let sheets = self.sheets.as_ref();
+        sheets.is_none_or(|sheets| sheets.levels.level(p) == sheets.levels.level(other))
+    }
+
+    /// Whether it has several levels.
+    pub fn has_levels(&self) -> bool {
+        self.sheets.is_some()
+    }
+
+    /// The triangles of the level at `p`, a point in the plane.
+    pub fn triangles_at(&self, p: Vector) -> impl Iterator<Item = u32> + '_ {
+        let level = self.sheets.as_ref().map(|sheets| sheets.levels.level(p));
+        let all = 0..self.mesh.triangles().len() as u32;
+        all.filter(move |&t| match (&self.sheets, level) {
+            (Some(sheets), Some(level)) => sheets.level[t as usize] == level,
+            _ => true,
+        })
+    }
+
+    /// A triangle that contains `p`, a point in the plane; `None` outside of the floor.
     pub fn locate(&self, p: Vector) -> Option<u32> {
         let mut near = self.grid.triangles(p).iter().copied();
-        near.find(|&t| self.mesh.contains(t, p))
+        near.find(|&t| self.plane().contains(t, p))
     }
 
     /// As [`locate`](Self::locate), but looks near triangle `before` first.
     pub fn locate_from(&self, before: u32, p: Vector) -> Option<u32> {
+        let plane = self.plane();
         let mut here = before;
         for _ in 0..STEPS {
-            let corners = self.mesh.corners(here);
+            let corners = plane.corners(here);
             let is_beyond = |&k: &usize| side(corners[k], corners[(k + 1) % 3], p) < 0.0;
             let Some(k) = (0..3).find(is_beyond) else {
                 return Some(here);
             };
-            let Some(next) = self.mesh.triangle(here).across[k] else {
+            let Some(next) = plane.triangle(here).across[k] else {
                 break;
             };
             here = next;
@@ -171,9 +251,9 @@ impl Floor {
         here.or_else(|| self.nearest(p))
     }
 
-    /// The triangle nearest to a point, such as one in a wall.
+    /// The triangle nearest to a point in the plane, such as one in a wall.
     pub fn nearest(&self, p: Vector) -> Option<u32> {
-        self.grid.nearest(&self.mesh, p)
+        self.grid.nearest(self.plane(), p)
     }
 
     /// The straight routes from corner `c` to corners with higher numbers.

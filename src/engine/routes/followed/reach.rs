@@ -28,10 +28,13 @@ impl Routes {
     /// floor's least width. If this holds for all places, as in a niche that an agent was pushed into, the lengths are
     /// those of the routes out through any passage.
     pub fn lengths(&self, p: Vector, places: &[u16]) -> Vec<f64> {
-        let here = self.floor.locate_or_nearest(None, p);
+        let (here, at) = (
+            self.floor.locate_or_nearest(None, p),
+            self.floor.in_building(p),
+        );
         let routes = places.iter().map(|&place| {
             let map = self.map_to(Destination::Place(place))?;
-            self.maps[usize::from(map)].way(&self.floor, p, here?, None)
+            self.maps[usize::from(map)].way(&self.floor, at, here?, None)
         });
         let routes: Vec<Option<Way>> = routes.collect();
         let is_narrow_here = !routes.iter().flatten().any(Way::is_wide);

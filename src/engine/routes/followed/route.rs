@@ -70,9 +70,9 @@ impl Routes {
         let route = route.get_or_insert_with(|| self.first_route(walker, seed));
         let Some(way) = self.go_on(route, p) else {
             let end = match walker.to {
-                Destination::Goal(goal) => goal,
+                Destination::Goal(goal) if self.floor.is_one_level(p, goal) => goal,
                 // Without a way, the agent stays.
-                Destination::Place(_) => p,
+                _ => p,
             };
             (route.next, route.reach) = (Next::Goal(end), 0.0);
             return end;
@@ -82,14 +82,17 @@ impl Routes {
         let floor = self.floor_of(route);
         let heading = match way.next {
             Next::Corner(bend) => way.borders.map(|borders| {
-                let (at, corner) = ((p, way.distance), (bend, borders));
+                let (at, corner) = ((floor.in_building(p), way.distance), (bend, borders));
                 around(floor, at, corner, route.clearance)
             }),
             Next::Goal(_) => self.turn_to_end(walker, route, &way, rounded),
             Next::Out(_) => None,
         };
         let ahead = way.distance.max(NEAREST);
-        heading.map_or(way.next.place(floor), |heading| p + heading * ahead)
+        heading.map_or_else(
+            || floor.seen_from(p, way.next.place(floor)),
+            |heading| p + heading * ahead,
+        )
     }
 
     /// The route of an agent that has not looked for its way yet.
@@ -136,7 +139,8 @@ impl Routes {
             distance: way.distance,
             line: source.and_then(Source::ends),
         };
-        let (heading, nearest) = between_borders(walker.position, &end, way.borders?, gap)?;
+        let here = floor.in_building(walker.position);
+        let (heading, nearest) = between_borders(here, &end, way.borders?, gap)?;
         route.rounds = rounds;
         route.reach = route.reach.min(SHARE * nearest);
         Some(heading)
@@ -146,7 +150,8 @@ impl Routes {
     /// way is certainly at most [`SLACK`] longer than the shortest.
     fn go_on(&self, route: &mut Route, p: Vector) -> Option<Way> {
         let (floor, map) = self.map_of(route)?;
-        if let Some(way) = map.way_over(floor, p, route.entry as usize) {
+        let at = floor.in_building(p);
+        if let Some(way) = map.way_over(floor, at, route.entry as usize) {
             // Moving shortened the shortest way by at most the distance moved.
             let excess = route.excess + way.length - route.length + (p - route.found).norm();
             route.set(floor, p, &way, excess);
@@ -155,7 +160,7 @@ impl Routes {
             }
         }
         let here = floor.locate_or_nearest(Some(route.triangle), p)?;
-        let way = map.way(floor, p, here, route.next.bend())?;
+        let way = map.way(floor, at, here, route.next.bend())?;
         route.triangle = here;
         route.entry = u32::try_from(way.entry).unwrap_or(u32::MAX);
         route.set(floor, p, &way, 0.0);
@@ -174,14 +179,17 @@ impl Routes {
     /// The points of the rest of a route, as in [`course`](Self::course); of a detour, those up to its opening.
     pub fn course_of(&self, route: &Route) -> Vec<Vector> {
         match self.map_of(route) {
-            Some((floor, map)) => points(floor, map, route.next).collect(),
+            Some((floor, map)) => points(floor, map, route.next)
+                .map(|point| floor.seen_from(route.found, point))
+                .collect(),
             None => vec![self.next(route)],
         }
     }
 
     /// The point that an agent on `route` walks to next, meters: a corner or its goal.
     pub fn next(&self, route: &Route) -> Vector {
-        route.next.place(self.floor_of(route))
+        let floor = self.floor_of(route);
+        floor.seen_from(route.found, route.next.place(floor))
     }
 
     /// The path map of a route, and the floor on which it lies.
@@ -198,10 +206,10 @@ impl Routes {
 impl Route {
     /// Takes a way from `p` that is at most `excess` meters longer than the shortest.
     fn set(&mut self, floor: &Floor, p: Vector, way: &Way, excess: f64) {
-        let place = way.next.place(floor);
+        let place = floor.seen_from(p, way.next.place(floor));
         (self.found, self.length, self.excess) = (p, way.length, excess);
         let most = (SHARE * way.distance).min(LONGEST).min(way.sight);
-        self.reach = floor.mesh.room_before(self.triangle, p, place, most);
+        self.reach = floor.plane().room_before(self.triangle, p, place, most);
     }
 
     /// Whether an agent at `position` still follows the route.

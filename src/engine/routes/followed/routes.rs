@@ -143,10 +143,12 @@ impl Routes {
     }
 
     /// The points of the shortest way from `p`, meters: its corners in order, then its end. Empty if there is no way.
+    /// On several levels it goes on beyond joins as if it stayed on that of `p`.
     pub fn course(&self, p: Vector, to: Destination) -> Vec<Vector> {
         let first = self.map_to(to).zip(self.way(p, to));
         first.map_or(Vec::new(), |(map, way)| {
-            points(&self.floor, &self.maps[usize::from(map)], way.next).collect()
+            let points = points(&self.floor, &self.maps[usize::from(map)], way.next);
+            points.map(|point| self.floor.seen_from(p, point)).collect()
         })
     }
 

@@ -56,7 +56,9 @@ impl Seen {
                         let middle = (a + b) / 2.0;
                         seen.look_from(floor, a, middle);
                         seen.look_from(floor, b, middle);
-                        seen.look_across(floor, [a, b]);
+                        let on_level = floor.triangles_at(middle).collect();
+                        let line = [a, b].map(|end| floor.in_building(end));
+                        seen.look_across(floor, line, on_level);
                     }
                 }
             }
@@ -85,11 +87,12 @@ impl Seen {
         expand(&floor.mesh, sights, enter, see);
     }
 
-    /// Adds everything that sees `point`, which is a goal or an end of the line with this `middle`; `None` if it is not
-    /// on the floor.
+    /// Adds everything that sees `point`, which is a goal or an end of the line with this `middle`, in the plane;
+    /// `None` if it is not on the floor.
     fn look_from(&mut self, floor: &Floor, point: Vector, middle: Vector) -> Option<()> {
         let mesh = &floor.mesh;
         let t = floor.locate(point)?;
+        let [point, middle] = [point, middle].map(|p| floor.in_building(p));
         let corners = mesh.corners(t);
         // For a point on a side, the visible cone through this side would have no width.
         let inside = (corners[0] + corners[1] + corners[2]) / 3.0;
@@ -110,13 +113,14 @@ impl Seen {
         Some(())
     }
 
-    /// Adds everything that sees the goal's line at a right angle: its nearest point lies between the ends of the line.
-    fn look_across(&mut self, floor: &Floor, [a, b]: [Vector; 2]) {
+    /// Adds everything that sees the goal's line on these triangles at a right angle: its nearest point lies between
+    /// the ends of the line.
+    fn look_across(&mut self, floor: &Floor, [a, b]: [Vector; 2], on: Vec<u32>) {
         let mesh = &floor.mesh;
         for away in [perpendicular(b - a), -perpendicular(b - a)] {
             let ends = [a, b];
             let target = self.add(Source::Line { ends, away });
-            for t in 0..mesh.triangles().len() as u32 {
+            for &t in &on {
                 let corners = mesh.corners(t);
                 let Some(piece) = clipped([a, b], corners) else {
                     continue;
@@ -195,12 +199,12 @@ fn clipped([a, b]: [Vector; 2], corners: [Vector; 3]) -> Option<[Vector; 2]> {
     (from < to).then(|| [at(from), at(to)])
 }
 
-/// The parts of a line on the floor, in order.
+/// The parts of a line in the plane on the floor, in order.
 fn free_parts(floor: &Floor, [a, b]: [Vector; 2]) -> Vec<[Vector; 2]> {
     let along = b - a;
     let part = |p: Vector| (p - a).dot(&along) / along.norm_squared();
     let triangles = 0..floor.mesh.triangles().len() as u32;
-    let pieces = triangles.filter_map(|t| clipped([a, b], floor.mesh.corners(t)));
+    let pieces = triangles.filter_map(|t| clipped([a, b], floor.plane().corners(t)));
     let mut pieces: Vec<[f64; 2]> = pieces.map(|piece| piece.map(part)).collect();
     pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut joined: Vec<[f64; 2]> = Vec::new();

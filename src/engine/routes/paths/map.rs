@@ -191,14 +191,15 @@ impl PathMap {
         }
     }
 
-    /// The way from a position, on the floor or in a wall.
+    /// The way from a position in the plane, on the floor or in a wall.
     pub fn way_from(&self, floor: &Floor, p: Vector) -> Option<Way> {
         let here = floor.locate_or_nearest(None, p)?;
-        self.way(floor, p, here, None)
+        self.way(floor, floor.in_building(p), here, None)
     }
 
-    /// The way from `p`, which lies in triangle `t`. `None` if the goal cannot be reached from there. An agent that
-    /// walks toward `held` goes on until this corner is behind it or another way is shorter by [`SLACK`].
+    /// The way from `p` in the building, which lies in triangle `t`. `None` if the goal cannot be reached from there.
+    /// An agent that walks toward `held` goes on until this corner is behind it or another way is shorter by
+    /// [`SLACK`].
     pub fn way(&self, floor: &Floor, p: Vector, t: u32, held: Option<Bend>) -> Option<Way> {
         let Some((number, entry)) = self.best(floor, p, t) else {
             return self

@@ -23,6 +23,8 @@ pub fn points(floor: &Floor, map: &PathMap, first: Next) -> impl Iterator<Item =
         next = match now {
             Next::Goal(_) => None,
             Next::Corner(bend) => map.after(floor, bend),
+            // Of several levels, nothing says on which of them the point lies.
+            Next::Out(_) if floor.has_levels() => None,
             Next::Out(point) => map.way_from(floor, point).map(|way| way.next),
         };
         Some(now.place(floor))

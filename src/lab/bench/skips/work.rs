@@ -130,7 +130,7 @@ pub fn lists(coarse: bool) -> Work {
             neighbors.list_walls(&agents, frame.walls);
             if needs.pairs.any() || needs.social || needs.walking || needs.density {
                 neighbors.list_agents();
-                packed.take_bodies(&agents, neighbors.extent(), neighbors.period(), |i| {
+                packed.take_bodies(&agents, neighbors.extent(), neighbors.way(), |i| {
                     let group = &scene.groups[usize::from(agents.group[i])];
                     group.blend.reach()
                 });

@@ -45,8 +45,9 @@ pub fn log(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
     let Some(routes) = &scene.routes else {
         return Ok(());
     };
-    let numbers = routes.floor.mesh.triangles().iter().flat_map(|t| t.corners);
-    let [low, high] = bounds(numbers.map(|k| routes.floor.mesh.point(k))).unwrap_or_default();
+    let mesh = routes.floor.plane();
+    let numbers = mesh.triangles().iter().flat_map(|t| t.corners);
+    let [low, high] = bounds(numbers.map(|k| mesh.point(k))).unwrap_or_default();
     let grid = Grid::over([low, high], PIXEL.max((high - low).max() / SIDE));
     for (entity, to) in destinations(scene) {
         log_field(stream, entity, &WayField::new(routes, to, grid))?;

@@ -66,6 +66,9 @@ pub struct StuckGroup {
     pub agent: u32,
     /// Its position, meters.
     pub at: [f64; 2],
+    /// In a building: the name of the level there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<String>,
     /// For how long it has made less headway than needed, seconds.
     pub for_secs: f64,
 }
@@ -113,6 +116,7 @@ pub(super) fn groups(seen: &[Option<Headway>], simulation: &Simulation) -> Vec<S
                 agents: 1,
                 agent: frame.agents.id[i],
                 at: frame.agents.position[i].into(),
+                level: None,
                 for_secs: frame.clock.time() - since,
             }),
         }

@@ -1,0 +1,371 @@
+//! A building's document → one in which its levels lie side by side in the plane of the engine.
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use crate::error::Problem;
+use crate::error::quote::shown;
+use crate::floor_plan::{Rings, free, rings};
+use crate::keys::levels::{Join, Level, ON_LEVELS};
+use crate::read::parsed::parsed;
+use crate::scene::levels::Building;
+use crate::scene::surroundings::{OBSTACLES, WALKABLE_AREA};
+use engine::geometry::Area;
+use engine::levels::Levels;
+use engine::math::{Vector, bounds, direction, perpendicular, sides};
+
+/// The keys of a building.
+const LEVELS: &str = "levels";
+const JOINS: &str = "joins";
+/// The key that says on which level something lies.
+const LEVEL: &str = "level";
+/// The keys that have a geometry, at any depth.
+const GEOMETRY: [&str; 10] = [
+    "line", "area", "path", "at", "facing", "position", "goal", "min", "max", "region",
+];
+/// The keys that a building has not, and why.
+const REFUSED: [(&str, &str); 8] = [
+    (WALKABLE_AREA, "the levels have their own"),
+    (OBSTACLES, "the levels have their own"),
+    (
+        "plan",
+        "floor plan files have one level; write the levels out",
+    ),
+    ("periodic", "a building does not repeat itself"),
+    (
+        "goal",
+        "give people a `goal` on their level, or let them walk to `exits`",
+    ),
+    ("from", "trajectories on several levels cannot be the start"),
+    (
+        "doors",
+        "doors in buildings are not known yet; leave gaps in the walls",
+    ),
+    (
+        "interventions",
+        "interventions in buildings are not known yet",
+    ),
+];
+
+/// People see this far onto the next level, meters.
+const REACH: f64 = 10.0;
+/// The floor of the next level must go on at least this far behind a join, meters.
+const LEAST_REACH: f64 = 0.6;
+/// The thickness of the walls between a level and what is seen of the next one beside it, meters.
+const THICKNESS: f64 = 0.01;
+/// Edges this near to each other are the same, meters.
+const SAME: f64 = 1e-6;
+/// Names of levels stand this far above them, meters.
+const ABOVE: f64 = 1.0;
+
+/// A building, side by side.
+#[derive(Debug, Clone)]
+pub struct SideBySide {
+    /// The document of the plane.
+    pub document: Value,
+    /// The levels.
+    pub levels: Arc<Levels>,
+    /// The outlines of what is seen of other levels, in the plane: nobody starts there.
+    pub seen: Rings,
+}
+
+/// The building of a document, side by side; `None` if it has no levels.
+///
+/// # Errors
+/// The first problem, with its place in the document.
+pub fn side_by_side(document: &Value) -> Result<Option<SideBySide>, Problem> {
+    let given = |key: &str| document.get(key).filter(|value| !is_empty(value));
+    let (Some(levels), joins) = (given(LEVELS), given(JOINS)) else {
+        let problem = joins_without_levels(document).or_else(|| level_without_levels(document));
+        return problem.map_or(Ok(None), Err);
+    };
+    for (key, reason) in REFUSED {
+        if given(key).is_some() {
+            return Err(Problem::new(
+                key,
+                format!("cannot be with `levels`: {reason}"),
+            ));
+        }
+    }
+    let under = |key: &'static str| move |problem: Problem| problem.under(key);
+    let levels: Vec<Level> = parsed(levels).map_err(under(LEVELS))?;
+    let joins: Option<Vec<Join>> = joins.map(parsed).transpose().map_err(under(JOINS))?;
+    let building = Building::new(&levels, &joins.unwrap_or_default())?;
+    let mut plane = document.clone();
+    place(&mut plane, &building)?;
+    let mut found = Laid::default();
+    for number in 0..building.floors.len() {
+        found.lay(&building, number)?;
+    }
+    plane[WALKABLE_AREA] = found.floors.into();
+    plane[OBSTACLES] = found.walls.into();
+    name_levels(&mut plane, &building);
+    Ok(Some(SideBySide {
+        document: plane,
+        levels: Arc::new(building.levels),
+        seen: found.seen,
+    }))
+}
+
+/// What a document without levels says of joins.
+fn joins_without_levels(document: &Value) -> Option<Problem> {
+    let joins = document.get(JOINS).filter(|value| !is_empty(value));
+    joins.map(|_| Problem::new(JOINS, "there are no `levels` to join"))
+}
+
+/// What lies on a level in a document without levels.
+fn level_without_levels(document: &Value) -> Option<Problem> {
+    ON_LEVELS.iter().find_map(|list| {
+        let elements = document.get(list)?.as_array()?;
+        let k = elements.iter().position(|element| {
+            let kinds = element.as_object().filter(|_| *list == "measurements");
+            let mut inner = kinds.into_iter().flatten();
+            element.get(LEVEL).is_some() || inner.any(|(_, keys)| keys.get(LEVEL).is_some())
+        })?;
+        let reason = "is a key of buildings, and there are no `levels`";
+        Some(Problem::new(format!("{list}[{k}].level"), reason))
+    })
+}
+
+fn is_empty(value: &Value) -> bool {
+    value.is_null() || value.as_array().is_some_and(Vec::is_empty)
+}
+
+/// Moves everything that lies on a level there.
+fn place(plane: &mut Value, building: &Building) -> Result<(), Problem> {
+    for list in ON_LEVELS {
+        for (at, keys) in on_levels(plane, list) {
+            place_one(keys, building).map_err(|problem| problem.under(&at))?;
+        }
+    }
+    Ok(())
+}
+
+/// The objects of a list that have a level, each with its place: those of measurements lie under their kind.
+fn on_levels<'a>(document: &'a mut Value, list: &str) -> Vec<(String, &'a mut Value)> {
+    let elements = document.get_mut(list).and_then(Value::as_array_mut);
+    let elements = elements.into_iter().flatten().enumerate();
+    let mut found = Vec::new();
+    for (k, element) in elements {
+        let at = format!("{list}[{k}]");
+        if list != "measurements" {
+            found.push((at, element));
+        } else if let Some(kinds) = element.as_object_mut() {
+            let inner = kinds.iter_mut().filter(|(_, keys)| keys.is_object());
+            found.extend(inner.map(|(kind, keys)| (format!("{at}.{kind}"), keys)));
+        }
+    }
+    found
+}
+
+/// The document without the key `level` of what lies on levels.
+pub fn without_level(mut document: Value) -> Value {
+    for list in ON_LEVELS {
+        for (_, keys) in on_levels(&mut document, list) {
+            if let Some(keys) = keys.as_object_mut() {
+                keys.remove(LEVEL);
+            }
+        }
+    }
+    document
+}
+
+fn place_one(element: &mut Value, building: &Building) -> Result<(), Problem> {
+    let Some(keys) = element.as_object_mut() else {
+        return Ok(());
+    };
+    let level = keys.remove(LEVEL).filter(|level| !level.is_null());
+    let is_somewhere = GEOMETRY
+        .iter()
+        .any(|key| keys.get(*key).is_some_and(Value::is_array));
+    match level {
+        Some(Value::String(name)) => {
+            let way = building.levels.way(building.number(&name)? as i32);
+            shift(element, way.x, false);
+            Ok(())
+        }
+        Some(_) => Err(Problem::new(LEVEL, "must be the name of a level")),
+        None if is_somewhere => {
+            let names = building.levels.all().iter();
+            let names: Vec<String> = names
+                .map(|level| format!("`{}`", shown(&level.name)))
+                .collect();
+            let reason = format!("missing key `level`: one of {}", names.join(", "));
+            Err(Problem::new("", reason))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Moves the points under the keys of geometries by `x` along x; `is_geometry`: `value` lies under such a key.
+fn shift(value: &mut Value, x: f64, is_geometry: bool) {
+    match value {
+        Value::Object(keys) => {
+            for (key, value) in keys {
+                shift(value, x, GEOMETRY.contains(&key.as_str()));
+            }
+        }
+        Value::Array(list) if is_geometry => match &mut list[..] {
+            [first, second] if first.is_number() && second.is_number() => {
+                *first = json!(first.as_f64().unwrap_or_default() + x);
+            }
+            list => list.iter_mut().for_each(|value| shift(value, x, true)),
+        },
+        _ => {}
+    }
+}
+
+/// Writes the name of each level above it.
+fn name_levels(plane: &mut Value, building: &Building) {
+    let names = building
+        .levels
+        .all()
+        .iter()
+        .zip(&building.floors)
+        .enumerate();
+    let labels = names.filter_map(|(number, (level, floor))| {
+        let [low, high] = bounds(corners(floor))?;
+        let at = building.levels.way(number as i32)
+            + Vector::new((low.x + high.x) / 2.0, high.y + ABOVE);
+        Some(json!({"text": level.name, "at": [at.x, at.y]}))
+    });
+    let mut all: Vec<Value> = labels.collect();
+    if let Some(given) = plane.get("labels").and_then(Value::as_array) {
+        all.extend(given.iter().cloned());
+    }
+    plane["labels"] = all.into();
+}
+
+fn corners(floor: &[Area]) -> impl Iterator<Item = Vector> + '_ {
+    floor
+        .iter()
+        .flat_map(|area| area.exterior.points().iter().copied())
+}
+
+/// Levels in the plane.
+#[derive(Default)]
+struct Laid {
+    /// Polygons to walk on, each with its rings.
+    floors: Vec<Value>,
+    walls: Vec<Value>,
+    seen: Rings,
+}
+
+impl Laid {
+    /// Lays a level with what is seen of those beyond its joins.
+    fn lay(&mut self, building: &Building, number: usize) -> Result<(), Problem> {
+        let own = &building.floors[number];
+        let way = building.levels.way(number as i32);
+        self.floors
+            .extend(own.iter().map(|area| polygon(area, way)));
+        for (k, &(line, between)) in building.joins.iter().enumerate() {
+            let (line, other) = match between {
+                [one, other] if one == number => (line, other),
+                [other, one] if one == number => ([line[1], line[0]], other),
+                _ => continue,
+            };
+            let seen = seen_beyond(line, own, &building.floors[other]);
+            let seen = seen.map_err(|problem| problem.under(&format!("joins[{k}].line")))?;
+            for area in &seen {
+                self.floors.push(polygon(area, way));
+                let outline = area.exterior.points().iter();
+                self.seen.push(outline.map(|&p| p + way).collect());
+            }
+            self.walls
+                .extend(walls_between(own, &seen, line).map(|wall| ring(&wall, way)));
+        }
+        Ok(())
+    }
+}
+
+fn ring(points: &[Vector], way: Vector) -> Value {
+    points.iter().map(|p| json!([p.x + way.x, p.y])).collect()
+}
+
+fn polygon(area: &Area, way: Vector) -> Value {
+    area.rings()
+        .map(|given| ring(given.points(), way))
+        .collect()
+}
+
+/// The floor of the next level as far as it is seen over a join, whose level lies on the left of the way from its first
+/// to its second end: as far as it does not lie above or below the `own` floor.
+fn seen_beyond([a, b]: [Vector; 2], own: &[Area], other: &[Area]) -> Result<Vec<Area>, Problem> {
+    let along = direction(b - a);
+    let beyond = -perpendicular(along);
+    let middle = (a + b) / 2.0 + beyond * (0.1 * LEAST_REACH);
+    let mut reach = REACH;
+    while reach >= LEAST_REACH {
+        let side = along * reach;
+        let depth = beyond * reach;
+        let frame = vec![a - side, a - side + depth, b + side + depth, b + side];
+        let all = free(&[rings(other), vec![frame]], &Rings::new()).map_err(Problem::from)?;
+        let near: Vec<Area> = all
+            .into_iter()
+            .filter(|area| area.contains(middle))
+            .collect();
+        let both = free(&[rings(&near), rings(own)], &Rings::new()).map_err(Problem::from)?;
+        if both.is_empty() {
+            return Ok(near);
+        }
+        reach *= 0.8;
+    }
+    let reason = format!(
+        "the two levels overlap right behind it: the floor of each must go on beyond the edge for {LEAST_REACH} m \
+         without lying above the other"
+    );
+    Err(Problem::new("", reason))
+}
+
+/// Thin walls on the `own` floor along the edges that it shares with what is `seen` of the next level, but for the
+/// join.
+fn walls_between(
+    own: &[Area],
+    seen: &[Area],
+    join: [Vector; 2],
+) -> impl Iterator<Item = Vec<Vector>> {
+    let edges = |areas: &[Area]| -> Vec<[Vector; 2]> {
+        let rings = areas.iter().flat_map(Area::rings);
+        rings
+            .flat_map(|ring| {
+                sides(ring.points())
+                    .map(|(a, b)| [a, b])
+                    .collect::<Vec<_>>()
+            })
+            .collect()
+    };
+    let mut walls = Vec::new();
+    for [a, b] in edges(own) {
+        let along = direction(b - a);
+        let length = (b - a).norm();
+        let part = |p: Vector| (p - a).dot(&along);
+        let lies_on =
+            |[c, d]: [Vector; 2]| [c, d].iter().all(|p| along.perp(&(p - a)).abs() < SAME);
+        for [c, d] in edges(seen).into_iter().filter(|&edge| lies_on(edge)) {
+            let [from, to] = [
+                part(c).min(part(d)).max(0.0),
+                part(c).max(part(d)).min(length),
+            ];
+            let of_join = lies_on(join).then(|| join.map(part));
+            let free = of_join.map_or([f64::INFINITY; 2], |[c, d]| [c.min(d), c.max(d)]);
+            for [from, to] in [[from, to.min(free[0])], [from.max(free[1]), to]] {
+                if to - from > SAME && to > from {
+                    let inward =
+                        own_side(own, a + along * ((from + to) / 2.0), perpendicular(along));
+                    let [p, q] = [from, to].map(|at| a + along * at);
+                    walls.push(vec![p, q, q + inward * THICKNESS, p + inward * THICKNESS]);
+                }
+            }
+        }
+    }
+    walls.into_iter()
+}
+
+/// The one of two opposite directions in which the `own` floor lies at `p` on its edge.
+fn own_side(own: &[Area], p: Vector, normal: Vector) -> Vector {
+    let inside = own
+        .iter()
+        .any(|area| area.contains(p + normal * (0.5 * THICKNESS)));
+    if inside { normal } else { -normal }
+}

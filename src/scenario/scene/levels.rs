@@ -1,0 +1,286 @@
+//! The levels of a building: their floors, heights and joins.
+
+use crate::error::quote::{shown, to_centimeters};
+use crate::error::{Problem, Under, suggestion};
+use crate::floor_plan::{FloorPlan, Rings, free, rings};
+use crate::keys::levels::{Join, Level, LevelKind, Speeds};
+use crate::keys::shapes::{Outline, Ring};
+use engine::geometry::Area;
+use engine::levels::{Level as Sheet, Levels};
+use engine::math::{Vector, bounds, direction, perpendicular};
+
+/// Levels have the same height at a join within this, meters.
+const SAME_HEIGHT: f64 = 0.05;
+/// Beside a join is what lies this far from it, meters.
+const BESIDE: f64 = 1e-3;
+/// The preferred speeds on a floor, up and down stairs, seen from above, m/s (Weidmann 1993).
+const WEIDMANN: [f64; 3] = [1.34, 0.610, 0.694];
+
+/// The levels of a building with what people can walk on.
+pub struct Building {
+    /// The levels, side by side in the plane of the engine.
+    pub levels: Levels,
+    /// The floor of each level in the building, without its obstacles.
+    pub floors: Vec<Vec<Area>>,
+    /// The line of each join in the building and the numbers of its levels, the first of which lies on its left.
+    pub joins: Vec<([Vector; 2], [usize; 2])>,
+}
+
+impl Building {
+    /// The building of a file.
+    ///
+    /// # Errors
+    /// The first problem, with its place in the file.
+    pub fn new(levels: &[Level], joins: &[Join]) -> Result<Self, Problem> {
+        let mut floors = Vec::with_capacity(levels.len());
+        for (k, level) in levels.iter().enumerate() {
+            floors.push(floor(level).under(&format!("levels[{k}]"))?);
+            if levels[..k].iter().any(|other| other.name == level.name) {
+                let reason = format!("there are two levels named `{}`", shown(&level.name));
+                return Err(Problem::new(format!("levels[{k}].name"), reason));
+            }
+        }
+        let mut found = Vec::with_capacity(joins.len());
+        for (k, join) in joins.iter().enumerate() {
+            let read = oriented(join, levels, &floors);
+            found.push(read.under(&format!("joins[{k}]"))?);
+        }
+        let mut sheets = Vec::with_capacity(levels.len());
+        for (k, level) in levels.iter().enumerate() {
+            sheets.push(sheet(k, levels, &found).map_err(|reason| {
+                let of = format!("`{}`: {reason}", shown(&level.name));
+                Problem::new(format!("levels[{k}]"), of)
+            })?);
+        }
+        for (k, (line, between)) in found.iter().enumerate() {
+            check_heights(*line, between.map(|number| &sheets[number]))
+                .under(&format!("joins[{k}].line"))?;
+        }
+        let points = floors
+            .iter()
+            .flatten()
+            .flat_map(|area| area.exterior.points());
+        let corners = bounds(points.copied()).unwrap_or_default();
+        let mut side_by_side = Levels::new(corners, sheets);
+        for &(line, between) in &found {
+            side_by_side.join(line, between);
+        }
+        Ok(Self {
+            levels: side_by_side,
+            floors,
+            joins: found,
+        })
+    }
+
+    /// The number of the level of this name.
+    pub fn number(&self, name: &str) -> Result<usize, Problem> {
+        let names = || self.levels.all().iter().map(|level| level.name.as_str());
+        names().position(|other| other == name).ok_or_else(|| {
+            let near = suggestion(name, names());
+            let all: Vec<String> = names().map(|name| format!("`{}`", shown(name))).collect();
+            let known = match near.is_empty() {
+                true => format!("; there are {}", all.join(", ")),
+                false => near,
+            };
+            Problem::new(
+                "level",
+                format!("there is no level named `{}`{known}", shown(name)),
+            )
+        })
+    }
+}
+
+/// The free floor of a level.
+fn floor(level: &Level) -> Result<Vec<Area>, Problem> {
+    let points = |Ring(ring): &Ring| ring.iter().map(|point| point.0).collect::<Vec<[f64; 2]>>();
+    let polygons: Vec<Vec<Vec<[f64; 2]>>> = level
+        .walkable_area
+        .iter()
+        .map(|polygon| polygon.iter().map(points).collect())
+        .collect();
+    let plan = FloorPlan::walkable(&polygons)
+        .map_err(Problem::from)
+        .under("walkable_area")?;
+    let mut bodies = Rings::new();
+    for (k, given) in level.obstacles.iter().enumerate() {
+        let place = format!("obstacles[{k}]");
+        let given: Vec<Vec<[f64; 2]>> = given.rings().iter().map(points).collect();
+        let walls = match &level.obstacles[k] {
+            Outline::Ring(_) => FloorPlan::wall(&given[0])
+                .map_err(Problem::from)
+                .under(&place)?,
+            Outline::Rings(_) => None,
+        };
+        let areas = match walls {
+            Some(walls) => walls,
+            None => vec![
+                FloorPlan::obstacle(&given)
+                    .map_err(Problem::from)
+                    .under(&place)?,
+            ],
+        };
+        bodies.extend(rings(&areas));
+    }
+    let free = free(&[rings(&plan.walkable)], &bodies);
+    free.map_err(Problem::from).under("walkable_area")
+}
+
+/// The line of a join, turned so that the first of its levels lies on its left.
+fn oriented(
+    join: &Join,
+    levels: &[Level],
+    floors: &[Vec<Area>],
+) -> Result<([Vector; 2], [usize; 2]), Problem> {
+    let number = |k: usize| {
+        let name = &join.levels[k];
+        let found = levels.iter().position(|level| level.name == *name);
+        found.ok_or_else(|| {
+            let near = suggestion(name, levels.iter().map(|level| level.name.as_str()));
+            let reason = format!("there is no level named `{}`{near}", shown(name));
+            Problem::new(format!("levels[{k}]"), reason)
+        })
+    };
+    let between = [number(0)?, number(1)?];
+    if between[0] == between[1] {
+        return Err(Problem::new("levels", "a join needs two different levels"));
+    }
+    let [a, b] = join.line.map(Vector::from);
+    if a == b {
+        return Err(Problem::new("line", "has no length"));
+    }
+    let left = perpendicular(direction(b - a)) * BESIDE;
+    let lies = |number: usize, way: Vector| {
+        let at = [0.02, 0.5, 0.98].map(|part| a + (b - a) * part + way);
+        let floor = &floors[number];
+        at.iter()
+            .all(|p| floor.iter().any(|area| area.contains(*p)))
+    };
+    let sides = between.map(|number| [lies(number, left), lies(number, -left)]);
+    match sides {
+        [[true, false], [false, true]] => Ok(([a, b], between)),
+        [[false, true], [true, false]] => Ok(([b, a], between)),
+        _ => {
+            let wrong = between.iter().zip(sides).find_map(|(&number, sides)| {
+                let name = shown(&levels[number].name);
+                match sides {
+                    [true, true] => Some(format!("`{name}` lies on both sides of it")),
+                    [false, false] => Some(format!("`{name}` lies on neither side of it")),
+                    _ => None,
+                }
+            });
+            let wrong = wrong.unwrap_or("both lie on the same side of it".to_owned());
+            let reason = format!("must be an edge of both levels, from end to end: {wrong}");
+            Err(Problem::new("line", reason))
+        }
+    }
+}
+
+/// The plane of level `k`.
+fn sheet(k: usize, levels: &[Level], joins: &[([Vector; 2], [usize; 2])]) -> Result<Sheet, String> {
+    let level = &levels[k];
+    let name = level.name.clone();
+    if level.kind == LevelKind::Floor {
+        let elevation = level.elevation.ok_or("a floor needs an `elevation`")?;
+        if level.speeds.is_some() || level.speed_factors.is_some() {
+            return Err("`speeds` and `speed_factors` are for stairs and ramps".to_owned());
+        }
+        return Ok(Sheet {
+            name,
+            at: Vector::zeros(),
+            elevation,
+            rise: Vector::zeros(),
+            speed_factors: [1.0; 2],
+        });
+    }
+    if level.elevation.is_some() {
+        return Err("stairs and ramps have the heights of the floors that they join".to_owned());
+    }
+    let ends = joins.iter().filter_map(|&(line, between)| {
+        let other = match between {
+            [one, other] if one == k => other,
+            [other, one] if one == k => other,
+            _ => return None,
+        };
+        Some((line, levels[other].elevation?))
+    });
+    let lowest = ends.clone().min_by(|a, b| a.1.total_cmp(&b.1));
+    let highest = ends.max_by(|a, b| a.1.total_cmp(&b.1));
+    let (Some(([a, b], low)), Some((upper, high))) = (lowest, highest) else {
+        return Err("join it to floors at its lower and at its upper end".to_owned());
+    };
+    let along = direction(b - a);
+    let normal = perpendicular(along);
+    let far = ((upper[0] + upper[1]) / 2.0 - a).dot(&normal);
+    if high - low < SAME_HEIGHT || far.abs() < SAME_HEIGHT {
+        return Err(format!(
+            "it needs joins with floors of two heights, one at its lower and one at its upper end; all are at {} m",
+            to_centimeters(low)
+        ));
+    }
+    let rise = normal * ((high - low) / far);
+    let factors = match (level.speed_factors, level.speeds, level.kind) {
+        (Some(_), Some(_), _) => return Err("give `speeds` or `speed_factors`".to_owned()),
+        (Some(factors), None, _) => factors,
+        (None, Some(Speeds::Same), _) | (None, None, LevelKind::Ramp) => [1.0; 2],
+        _ => {
+            let [flat, up, down] = WEIDMANN;
+            [up, down].map(|speed| speed / flat * (1.0 + rise.norm_squared()).sqrt())
+        }
+    };
+    Ok(Sheet {
+        name,
+        at: a,
+        elevation: low,
+        rise,
+        speed_factors: factors,
+    })
+}
+
+/// Checks that two levels have the same height along a join.
+fn check_heights(line: [Vector; 2], sheets: [&Sheet; 2]) -> Result<(), Problem> {
+    for p in line {
+        let [one, other] = sheets.map(|sheet| sheet.height(p));
+        if (one - other).abs() > SAME_HEIGHT {
+            let reason = format!(
+                "at ({}, {}) `{}` is at {} m and `{}` at {} m",
+                p.x,
+                p.y,
+                shown(&sheets[0].name),
+                to_centimeters(one),
+                shown(&sheets[1].name),
+                to_centimeters(other),
+            );
+            return Err(Problem::new("", reason));
+        }
+    }
+    Ok(())
+}
+
+/// A text for people, in which places of the plane become those of the building: `(x, y) on `level``.
+pub fn in_building(levels: &Levels, text: &str) -> String {
+    let mut said = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(open) = rest.find('(') {
+        let (before, after) = rest.split_at(open);
+        said.push_str(before);
+        let point = after[1..].split_once(')').and_then(|(inside, behind)| {
+            let (x, y) = inside.split_once(", ")?;
+            let place = Vector::new(x.parse().ok()?, y.parse().ok()?);
+            Some((place, behind))
+        });
+        match point {
+            Some((place, behind)) => {
+                let level = &levels.all()[levels.level(place)];
+                let own = levels.in_building(place).map(to_centimeters);
+                let name = shown(&level.name);
+                said.push_str(&format!("({}, {}) on `{name}`", own.x, own.y));
+                rest = behind;
+            }
+            None => {
+                said.push('(');
+                rest = &after[1..];
+            }
+        }
+    }
+    said + rest
+}
