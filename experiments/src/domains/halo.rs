@@ -53,7 +53,7 @@ impl Field {
     /// The agents closer than `radius` meters to agent `i`, and itself.
     fn near(&self, i: usize, radius: f64) -> impl Iterator<Item = usize> + '_ {
         let p = self.positions[i];
-        let rows = self.grid.rows([p; 2], radius);
+        let rows = self.grid.rows(p, [p; 2], radius);
         let near = rows.flat_map(|run| run.indices());
         near.filter(move |&j| (p - self.positions[j]).norm_squared() < radius * radius)
     }
