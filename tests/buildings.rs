@@ -1,65 +1,11 @@
-//! Buildings: scenario files with levels and joins. What is said is recomputed from the files and the positions alone.
+//! Buildings: scenario files with levels and joins. What people do is recomputed from files and positions alone.
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use sandbox::engine::math::Vector;
-use sandbox::engine::routes::Destination;
-use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::Scenario;
 use serde_json::{Value, json};
 
+use crate::common::buildings::{each, folded, house, read};
 use crate::common::vector;
-
-/// A house of two floors with a flight of stairs, in which people upstairs walk to the street.
-fn house() -> Value {
-    json!({
-        "profile": "steer+sph",
-        "duration_secs": 120,
-        "levels": [
-            {"name": "ground", "elevation": 0, "walkable_area": [[[[0, 0], [10, 0], [10, 6], [0, 6]]]]},
-            {"name": "stairs", "kind": "stairs", "walkable_area": [[[[10, 0], [14, 0], [14, 1.5], [10, 1.5]]]]},
-            {"name": "upper", "elevation": 2.5, "walkable_area": [[[[14, 0], [20, 0], [20, 6], [14, 6]]]]},
-        ],
-        "joins": [
-            {"levels": ["ground", "stairs"], "line": [[10, 0], [10, 1.5]]},
-            {"levels": ["stairs", "upper"], "line": [[14, 0], [14, 1.5]]},
-        ],
-        "crowds": [{"name": "people", "level": "upper", "area": [[14, 0], [20, 0], [20, 6], [14, 6]], "number": 40}],
-        "exits": [{"name": "street", "level": "ground", "line": [[0, 2], [0, 3.2]]}],
-        "stop": {"when_empty": true},
-    })
-}
-
-/// A house whose upper floor lies above the ground floor: the stairs turn back over it by a landing. The hall goes on
-/// beside and behind the stairs.
-fn folded() -> Value {
-    json!({
-        "profile": "sph",
-        "duration_secs": 120,
-        "levels": [
-            {"name": "ground", "elevation": 0,
-             "walkable_area": [[[[0, 0], [10, 0], [10, 6], [0, 6]], [[4, 2], [8, 2], [8, 3.5], [4, 3.5]]]]},
-            {"name": "up", "kind": "stairs", "walkable_area": [[[[4, 2], [8, 2], [8, 3.5], [4, 3.5]]]]},
-            {"name": "upper", "elevation": 3, "walkable_area": [[[[8, 0], [12, 0], [12, 6], [8, 6]]]]},
-        ],
-        "joins": [
-            {"levels": ["ground", "up"], "line": [[4, 2], [4, 3.5]]},
-            {"levels": ["up", "upper"], "line": [[8, 2], [8, 3.5]]},
-        ],
-        "crowds": [{"level": "upper", "area": [[8, 0], [12, 0], [12, 6], [8, 6]], "number": 30}],
-        "exits": [{"name": "street", "level": "ground", "line": [[10, 4], [10, 5.2]]}],
-        "stop": {"when_empty": true},
-    })
-}
-
-fn read(document: &Value) -> Scenario {
-    Scenario::parse(&document.to_string(), "house.json", &[]).unwrap()
-}
-
-fn refused(document: &Value) -> String {
-    let problem = Scenario::parse(&document.to_string(), "house.json", &[]);
-    problem.unwrap_err().to_string()
-}
 
 /// The height at a place of a level, from the document alone: `slopes` has, for each sloping level, the x and heights
 /// of its ends.
@@ -71,28 +17,6 @@ fn height(level: &str, x: f64, document: &Value, slopes: &[(&str, [f64; 4])]) ->
     let levels = document["levels"].as_array().unwrap();
     let own = levels.iter().find(|own| own["name"] == level).unwrap();
     own["elevation"].as_f64().unwrap()
-}
-
-/// Runs to the end; calls `see` with the id, the place in the building and the name of the level of everybody.
-fn each(scenario: &Scenario, mut see: impl FnMut(u32, Vector, &str)) -> usize {
-    let levels = scenario.scene.levels.clone().unwrap();
-    let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
-    for _ in 0..15_000 {
-        simulation.evaluate().unwrap();
-        let agents = simulation.frame().agents;
-        for (&id, &p) in agents.id.iter().zip(&agents.position) {
-            see(
-                id,
-                levels.in_building(p),
-                &levels.all()[levels.level(p)].name,
-            );
-        }
-        if agents.is_empty() {
-            break;
-        }
-        simulation.integrate().unwrap();
-    }
-    simulation.outcome().arrivals.len()
 }
 
 #[test]
@@ -186,135 +110,62 @@ fn speeds_on_slopes_are_those_of_their_set() {
     }
 }
 
-#[test]
-fn ways_lead_to_the_nearer_exit_over_levels() {
-    let mut document = house();
-    document["exits"] = json!([
-        {"name": "street", "level": "ground", "line": [[0, 2], [0, 3.2]]},
-        {"name": "balcony", "level": "upper", "line": [[20, 4], [20, 5.2]]},
-    ]);
-    document["crowds"] = json!([
-        {"level": "upper", "area": [[17, 3], [19, 3], [19, 6], [17, 6]], "number": 5},
-        {"level": "stairs", "area": [[11, 0], [13, 0], [13, 1.5], [11, 1.5]], "number": 3},
-        {"level": "ground", "area": [[7, 0], [9, 0], [9, 1.5], [7, 1.5]], "number": 3},
-    ]);
-    let scenario = read(&document);
-    let mut simulation = Simulation::new(scenario.scene).unwrap();
-    crate::common::run(&mut simulation, 3000);
-    let exits = simulation
-        .outcome()
-        .arrivals
-        .iter()
-        .map(|arrival| (arrival.id, arrival.trip.unwrap().exit));
-    let mut exits: Vec<_> = exits.collect();
-    exits.sort_unstable();
-    // From the stairs, 9 to 10 m lead to the balcony and 11 m or more to the street.
-    let expected = (0..8).map(|id| (id, 1)).chain((8..11).map(|id| (id, 0)));
-    assert_eq!(exits, expected.collect::<Vec<_>>());
-}
-
-#[test]
-fn wrong_buildings_are_refused_with_their_place() {
-    let with = |path: &str, value: Value| {
-        let mut document = house();
-        match document.pointer_mut(path) {
-            Some(place) => *place = value,
-            None => {
-                let (parent, key) = path.rsplit_once('/').unwrap();
-                document.pointer_mut(parent).unwrap()[key] = value;
-            }
-        }
-        document
+/// Two flights side by side, without a gap between them, that meet at a landing.
+fn touching() -> Value {
+    let floor = |x: [f64; 2], y: [f64; 2]| {
+        json!([[[[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]]]])
     };
-    let cases = [
-        (
-            with("/exits/0/level", json!("grund")),
-            "exits[0].level: there is no level named `grund`; did you mean `ground`?",
-        ),
-        (
-            with("/exits/0/level", Value::Null),
-            "exits[0]: missing key `level`: one of `ground`, `stairs`, `upper`",
-        ),
-        (
-            with("/levels/0/elevation", Value::Null),
-            "levels[0]: `ground`: a floor needs an `elevation`",
-        ),
-        (
-            with("/levels/1/elevation", json!(1)),
-            "levels[1]: `stairs`: stairs and ramps have the heights of the floors that they join",
-        ),
-        (
-            with("/levels/2/name", json!("ground")),
-            "levels[2].name: there are two levels named `ground`",
-        ),
-        (
-            with("/joins/1/line", json!([[15, 0], [15, 1.5]])),
-            "joins[1].line: must be an edge of both levels, from end to end: `stairs` lies on neither side of it",
-        ),
-        (
-            with("/joins/0/line", json!([[10, 0], [10, 3]])),
-            "joins[0].line: must be an edge of both levels, from end to end: `stairs` lies on neither side of it",
-        ),
-        (
-            with("/joins/0/levels", json!(["ground", "ground"])),
-            "joins[0].levels: a join needs two different levels",
-        ),
-        (
-            with("/joins/0/levels", json!(["ground", "stair"])),
-            "joins[0].levels[1]: there is no level named `stair`; did you mean `stairs`?",
-        ),
-        (
-            with("/levels/2/elevation", json!(0)),
-            "levels[1]: `stairs`: it needs joins with floors of two heights, one at its lower and one at its",
-        ),
-        (
-            with("/walkable_area", json!([[[[0, 0], [1, 0], [1, 1]]]])),
-            "walkable_area: cannot be with `levels`: the levels have their own",
-        ),
-        (
-            with("/doors", json!([{"name": "d", "line": [[1, 1], [1, 2]]}])),
-            "doors: cannot be with `levels`: doors in buildings are not known yet; leave gaps in the walls",
-        ),
-        (
-            with("/levels", json!([])),
-            "joins: there are no `levels` to join",
-        ),
-        (
-            with("/route_choice", json!("quickest")),
-            "route_choice: `quickest` routes are not known in buildings yet; remove it",
-        ),
-        (
-            with(
-                "/crowds/0/area",
-                json!([[24, 0], [30, 0], [30, 6], [24, 6]]),
-            ),
-            "crowds[0].area: lies in obstacles or outside of the walkable area",
-        ),
-        (with("/levels/0/kind", json!("stair")), "levels[0].kind"),
-        (with("/levels/0/height", json!(3)), "levels[0]"),
-    ];
-    for (document, expected) in cases {
-        let said = refused(&document);
-        assert!(said.contains(expected), "{said}\ninstead of: {expected}");
-    }
+    let (left, right) = ([0.0, 1.5], [1.5, 3.0]);
+    json!({
+        "profile": "sph",
+        "duration_secs": 60,
+        "levels": [
+            {"name": "upper", "elevation": 3, "walkable_area": floor(left, [-8.0, -4.0])},
+            {"name": "from above", "kind": "stairs", "walkable_area": floor(left, [-4.0, 0.0])},
+            {"name": "landing", "elevation": 1.5, "walkable_area": floor([0.0, 3.0], [0.0, 1.5])},
+            {"name": "down", "kind": "stairs", "walkable_area": floor(right, [-4.0, 0.0])},
+            {"name": "lower", "elevation": 0, "walkable_area": floor(right, [-8.0, -4.0])},
+        ],
+        "joins": [
+            {"levels": ["upper", "from above"], "line": [[0, -4], [1.5, -4]]},
+            {"levels": ["from above", "landing"], "line": [[0, 0], [1.5, 0]]},
+            {"levels": ["landing", "down"], "line": [[1.5, 0], [3, 0]]},
+            {"levels": ["down", "lower"], "line": [[1.5, -4], [3, -4]]},
+        ],
+        "exits": [{"name": "end", "level": "lower", "line": [[1.5, -8], [3, -8]]}],
+        "crowds": [{"level": "upper", "area": [[0, -8], [1.5, -8], [1.5, -4], [0, -4]], "number": 12}],
+        "stop": {"when_empty": true},
+    })
 }
 
 #[test]
-fn messages_name_places_of_the_building() {
-    let mut document = house();
-    document["agents"] = json!([{"level": "upper", "position": [25, 3]}]);
-    let said = refused(&document);
-    assert!(said.contains("(25, 3) on `upper`"), "{said}");
-    // Without the stairs, no way leads down.
-    let mut document = house();
-    document["joins"] = json!([{"levels": ["ground", "stairs"], "line": [[10, 0], [10, 1.5]]}]);
-    let floor = document["levels"][1]["walkable_area"].clone();
-    document["levels"][1] = json!({"name": "stairs", "elevation": 0, "walkable_area": floor});
-    let said = refused(&document);
-    assert!(
-        said.contains("no way leads from") && said.contains("on `upper`"),
-        "{said}"
-    );
+fn flights_may_touch_and_people_turn_at_the_landing_between_them() {
+    let scenario = read(&touching());
+    let mut places = vec![Vec::new(); 12];
+    let left = each(&scenario, |id, p, level| {
+        // The wall between the two flights has no thickness.
+        let x = match level {
+            "upper" | "from above" => 0.0..1.5,
+            "down" | "lower" => 1.5..3.0,
+            _ => 0.0..3.0,
+        };
+        assert!(x.contains(&p.x), "{id} is at {p} on {level}");
+        places[id as usize].push(level.to_owned());
+    });
+    assert_eq!(left, 12);
+    for mut levels in places {
+        levels.dedup();
+        assert_eq!(levels, ["upper", "from above", "landing", "down", "lower"]);
+    }
+    // The landing has a wall between what is seen of both flights.
+    let walls = scenario.scene.walls.iter();
+    let levels = scenario.scene.levels.unwrap();
+    let between = walls.filter(|wall| {
+        let ends = [wall.start, wall.end].map(|p| levels.in_building(p));
+        levels.level(wall.start) == 2 && ends.iter().all(|p| (p.x - 1.5).abs() < 0.02 && p.y <= 0.0)
+    });
+    let longest = between.map(|wall| (wall.end - wall.start).norm());
+    assert!(longest.fold(0.0, f64::max) > 3.9);
 }
 
 #[test]
@@ -326,95 +177,4 @@ fn a_building_written_and_read_again_is_the_same() {
     let heights = scenario.scene.levels.unwrap();
     let stairs = heights.way(1);
     assert!((heights.height(stairs + vector(12.0, 1.0)) - 1.25).abs() < 1e-9);
-}
-
-/// A tower of random storeys, all above each other, with a staircase at its east side: from each storey a flight leads
-/// up to a landing and another one back to the next storey, above the first.
-fn tower(random: &mut ChaCha8Rng) -> (Value, usize, f64) {
-    let storeys = random.random_range(2..=5);
-    let width = random.random_range(6.0..14.0);
-    let depth = random.random_range(4.0..9.0);
-    let rectangle = |x: [f64; 2], y: [f64; 2]| {
-        json!([[[[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]]]])
-    };
-    let (up, back) = ([0.0, 1.6], [2.0, 3.6]);
-    let (flight, landing) = ([width, width + 4.0], [width + 4.0, width + 5.6]);
-    let (mut levels, mut joins) = (Vec::new(), Vec::new());
-    let mut join = |a: &str, b: &str, x: f64, y: [f64; 2]| {
-        joins.push(json!({"levels": [a, b], "line": [[x, y[0]], [x, y[1]]]}));
-    };
-    for k in 0..storeys {
-        let floor = rectangle([0.0, width], [0.0, depth]);
-        levels.push(json!({"name": format!("{k}"), "elevation": 3 * k, "walkable_area": floor}));
-        if k + 1 == storeys {
-            break;
-        }
-        let [one, half, two] = ["up", "landing", "back"].map(|part| format!("{k} {part}"));
-        levels.push(json!({"name": one, "kind": "stairs", "walkable_area": rectangle(flight, up)}));
-        let area = rectangle(landing, [0.0, 3.6]);
-        let elevation = 3.0 * k as f64 + 1.5;
-        levels.push(json!({"name": half, "elevation": elevation, "walkable_area": area}));
-        levels
-            .push(json!({"name": two, "kind": "stairs", "walkable_area": rectangle(flight, back)}));
-        join(&format!("{k}"), &one, flight[0], up);
-        join(&one, &half, flight[1], up);
-        join(&half, &two, flight[1], back);
-        join(&two, &format!("{}", k + 1), flight[0], back);
-    }
-    let crowds = (0..storeys).map(|k| {
-        let area = [[0.0, 0.0], [width, 0.0], [width, depth], [0.0, depth]];
-        json!({"level": format!("{k}"), "area": area, "number": 6})
-    });
-    let profile = ["sph", "sf->sph", "steer+sph"][random.random_range(0..3)];
-    let document = json!({
-        "profile": profile,
-        "duration_secs": 300,
-        "levels": levels,
-        "joins": joins,
-        "crowds": crowds.collect::<Vec<_>>(),
-        "exits": [{"name": "street", "level": "0", "line": [[0, 0.8], [0, 2.4]]}],
-        "stop": {"when_empty": true},
-    });
-    (document, storeys, width)
-}
-
-#[test]
-fn ways_down_random_towers_are_as_long_as_taut_strings_and_everybody_arrives() {
-    let mut random = ChaCha8Rng::seed_from_u64(7);
-    for number in 0..60 {
-        let (document, storeys, width) = tower(&mut random);
-        let scenario = read(&document);
-        let levels = scenario.scene.levels.clone().unwrap();
-        let routes = scenario.scene.routes.clone().unwrap();
-        let distance = |a: Vector, b: Vector| (a - b).norm();
-        for agent in &scenario.scene.agents {
-            let p = levels.in_building(agent.position);
-            let storey: usize = levels.all()[levels.level(agent.position)]
-                .name
-                .parse()
-                .unwrap();
-            let [well, below] = [2.0, 1.6].map(|y| vector(width + 4.0, y));
-            let taut = if storey == 0 {
-                distance(p, vector(0.0, p.y.clamp(0.81, 2.39)))
-            } else {
-                let at_edge = p.y + (2.0 - p.y) * (width - p.x) / (width + 4.0 - p.x);
-                let corner = vector(width, if at_edge < 2.0 { 2.0 } else { 3.6 });
-                let to_well = match (2.0..=3.6).contains(&at_edge) {
-                    true => distance(p, well),
-                    false => distance(p, corner) + distance(corner, well),
-                };
-                // Down to the landing, around the well, down to the next storey, and around again.
-                to_well + distance(well, below) + 4.0 + 8.8 * (storey as f64 - 1.0) + width
-            };
-            let own = routes.length(agent.position, Destination::Place(0));
-            assert!(
-                (own - taut).abs() < 1e-6,
-                "tower {number}, storey {storey}, {p}: {own}, {taut}"
-            );
-        }
-        if number % 5 == 0 {
-            let left = each(&scenario, |_, _, _| {});
-            assert_eq!(left, 6 * storeys, "tower {number}");
-        }
-    }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use sandbox::lab::differences::{Difference, Differences, NotAReport, of_reports, of_tracks};
 use sandbox::lab::reproduce::published_for;
-use sandbox::scenario::trajectories::{ReadOptions, read_text};
+use sandbox::scenario::trajectories::{OnLevel, ReadOptions, read_text};
 use sandbox::scenario::{Scenario, Setting};
 use serde_json::{Value, json};
 
@@ -164,6 +164,7 @@ fn tracks(text: &str) -> sandbox::scenario::trajectories::Tracks {
         &ReadOptions {
             fps: Some(10.0),
             unit: None,
+            level: OnLevel::Only,
         },
     )
     .unwrap()

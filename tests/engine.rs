@@ -8,6 +8,8 @@ mod common;
 mod architecture;
 mod blending;
 mod bodies;
+mod building_errors;
+mod building_routes;
 mod buildings;
 mod calibrated;
 mod closed_doors;

@@ -22,14 +22,16 @@ fn corners([[x0, x1], [y0, y1]]: Sides) -> Vec<[f64; 2]> {
     vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
 }
 
-/// A level at this height.
-fn flat(elevation: f64) -> Level {
+/// A level at this height, with these rectangles.
+fn flat(elevation: f64, floor: &[Sides]) -> Level {
+    let rings: Vec<Vec<Vec<[f64; 2]>>> = floor.iter().map(|sides| vec![corners(*sides)]).collect();
     Level {
         name: "floor".to_owned(),
         at: Vector::zeros(),
         elevation,
         rise: Vector::zeros(),
         speed_factors: [1.0; 2],
+        floor: FloorPlan::walkable(&rings).unwrap().walkable,
     }
 }
 
@@ -57,8 +59,8 @@ fn on_levels(profile: &str, levels: Levels, floors: &[Vec<Sides>], goals: &[Vect
 
 /// The levels of a corridor of 30 m × 3 m that is cut into three at x = 10 and 20.
 fn cuts() -> Levels {
-    let corners = [vector(0.0, 0.0), vector(30.0, 3.0)];
-    let mut levels = Levels::new(corners, vec![flat(0.0); 3]);
+    let parts = [[0.0, 10.0], [10.0, 20.0], [20.0, 30.0]];
+    let mut levels = Levels::new(parts.map(|x| flat(0.0, &[[x, [0.0, 3.0]]])).to_vec());
     for (x, between) in [(10.0, [0, 1]), (20.0, [1, 2])] {
         levels.join([vector(x, 0.0), vector(x, 3.0)], between);
     }
@@ -160,18 +162,18 @@ fn a_corridor_that_is_cut_into_levels_is_the_whole_one() {
 /// A house: a floor, a flight of stairs, a landing, a flight back, and a floor above the first one.
 fn house(profile: &str) -> Scene {
     let [up, back] = [[0.0, 1.8], [2.2, 4.0]];
-    let mut levels = Levels::new(
-        [vector(0.0, 0.0), vector(16.0, 4.0)],
-        [0.0, 0.0, 1.5, 1.5, 3.0].map(flat).to_vec(),
-    );
+    let (story, landing) = ([[0.0, 10.0], [0.0, 4.0]], [[14.0, 16.0], [0.0, 4.0]]);
+    let flights = [up, back].map(|y| [[10.0, 14.0], y]);
+    let own = [story, flights[0], landing, flights[1], story].into_iter();
+    let own = own.zip([0.0, 0.0, 1.5, 1.5, 3.0]);
+    let mut levels = Levels::new(own.map(|(sides, height)| flat(height, &[sides])).collect());
     let line = |x: f64, [from, to]: [f64; 2]| [vector(x, from), vector(x, to)];
     levels.join(line(10.0, up), [0, 1]);
     levels.join(line(14.0, up), [1, 2]);
     // The landing lies on the right of the second flight.
     levels.join(line(14.0, [back[1], back[0]]), [2, 3]);
     levels.join(line(10.0, [back[1], back[0]]), [3, 4]);
-    let (story, landing) = ([[0.0, 10.0], [0.0, 4.0]], [[14.0, 16.0], [0.0, 4.0]]);
-    let [up, back] = [up, back].map(|y| [[10.0, 14.0], y]);
+    let [up, back] = flights;
     let floors = [
         vec![story, up],
         vec![story, up, landing],

@@ -3,11 +3,12 @@
 use crate::common::tracks::{file, read_as};
 use crate::common::vector;
 use rusqlite::Connection;
-use sandbox::scenario::trajectories::{ReadOptions, Tracks, Unit, read};
+use sandbox::scenario::trajectories::{OnLevel, ReadOptions, Tracks, Unit, read};
 
 const PLAIN: ReadOptions = ReadOptions {
     unit: None,
     fps: None,
+    level: OnLevel::Only,
 };
 
 fn read_text(text: &str) -> Tracks {
@@ -116,6 +117,7 @@ fn options_override_the_file_and_a_note_says_so() {
     let options = ReadOptions {
         unit: Some(Unit::Centimeter),
         fps: Some(20.0),
+        ..PLAIN
     };
     let text = "# framerate: 10\n# id frame x/m y/m\n1 0 100 50\n";
     let tracks = read_as("a.txt", text, &options).unwrap();

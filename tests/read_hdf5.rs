@@ -5,11 +5,12 @@ use std::fs;
 use crate::common::program::{refused, run_json};
 use crate::common::vector;
 use hdf5_pure::{AttrValue, CompoundTypeBuilder, Datatype, FileBuilder};
-use sandbox::scenario::trajectories::{ReadOptions, Tracks, read};
+use sandbox::scenario::trajectories::{OnLevel, ReadOptions, Tracks, read};
 
 const PLAIN: ReadOptions = ReadOptions {
     unit: None,
     fps: None,
+    level: OnLevel::Only,
 };
 
 const PLAN: &str = "POLYGON ((0 0, 9 0, 9 9, 0 9, 0 0))";

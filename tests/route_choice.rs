@@ -296,7 +296,7 @@ fn rooms_lead_to_all_goals_that_routes_lead_to() {
             .nth(rng.random_range(0..middles().count()))
             .unwrap();
         let goals = [vec![sandbox::engine::routes::Goal::Point(goal)]];
-        let rooms = Rooms::new(&areas, width, &[], WIDEST, &goals).unwrap();
+        let rooms = Rooms::new((&areas, None), [width, WIDEST], &[], &goals).unwrap();
         let routes = sandbox::engine::routes::Routes::new(floor.clone(), &goals, vec![]).unwrap();
         for p in middles() {
             let way = routes.open_way(p, Destination::Place(0));

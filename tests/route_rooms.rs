@@ -50,7 +50,7 @@ fn agents_that_move_by_less_than_their_free_distance_stay_in_their_room() {
         };
         let areas = plan.areas();
         let sights = Sights::new(&areas);
-        let rooms = Rooms::new(&areas, WIDTH, &[], WIDEST, &[]).unwrap();
+        let rooms = Rooms::new((&areas, None), [WIDTH, WIDEST], &[], &[]).unwrap();
         let room = |p: Vector| rooms.floor.locate(p).map(|t| rooms.room(t));
         let mut counts = [0; 2];
         for p in places(&mut rng, &plan, &rooms) {

@@ -9,11 +9,12 @@ use crate::common::vector;
 use rusqlite::Connection;
 use sandbox::analysis::crossing::Line;
 use sandbox::lab::measure::{Options, Site};
-use sandbox::scenario::trajectories::{ReadOptions, Tracks, Unit, read};
+use sandbox::scenario::trajectories::{OnLevel, ReadOptions, Tracks, Unit, read};
 
 const PLAIN: ReadOptions = ReadOptions {
     unit: None,
     fps: None,
+    level: OnLevel::Only,
 };
 /// How fast all people walk along x, m/s, from 0 to 5 m.
 const SPEED: f64 = 1.25;
@@ -164,6 +165,7 @@ fn frames_before_ids_are_told_by_the_ways_of_people() {
         let options = ReadOptions {
             unit,
             fps: Some(25.0),
+            ..PLAIN
         };
         for text in [text("", &rows, frame_first), text("", &rows, eight)] {
             let tracks = read_as("a.txt", &text, &options).unwrap();
@@ -239,7 +241,7 @@ fn wrong_units_are_told_with_the_one_that_fits() {
         (None, "1250 m/s, 962"),
         (Some(Unit::Centimeter), "12.5 m/s, 9.62"),
     ] {
-        let notes = read_as("a.txt", &plain, &ReadOptions { unit, fps: None })
+        let notes = read_as("a.txt", &plain, &ReadOptions { unit, ..PLAIN })
             .unwrap()
             .notes;
         let note = format!(
@@ -249,7 +251,7 @@ fn wrong_units_are_told_with_the_one_that_fits() {
     }
     let unit = Some(Unit::Millimeter);
     check(
-        &read_as("a.txt", &plain, &ReadOptions { unit, fps: None }).unwrap(),
+        &read_as("a.txt", &plain, &ReadOptions { unit, ..PLAIN }).unwrap(),
         5,
     );
     for header in [

@@ -16,6 +16,7 @@ use output::plot::Print;
 use runs::outputs::Outputs;
 use runs::store::Store;
 use scenario::quote::shown;
+use scenario::trajectories::{OnLevel, ReadOptions, UNITS, Unit};
 use scenario::{Preset, Setting};
 
 /// Options that change a scenario and how it is computed.
@@ -40,6 +41,28 @@ pub struct SceneOptions {
     pub geometry: Option<PathBuf>,
     #[command(flatten)]
     pub program: ProgramOptions,
+}
+
+/// How trajectory files are read.
+#[derive(Args)]
+pub struct TrackOptions {
+    /// Unit of the coordinates in trajectory files [default: that of the file, else m]
+    #[arg(long, value_parser = PossibleValuesParser::new(UNITS))]
+    pub unit: Option<String>,
+    /// Of a building, this level only
+    #[arg(long, value_name = "NAME")]
+    pub level: Option<String>,
+}
+
+impl TrackOptions {
+    /// How to read a file whose frame rate the command line gives.
+    pub fn reading(&self, fps: Option<f64>) -> ReadOptions {
+        ReadOptions {
+            unit: self.unit.as_deref().and_then(Unit::named),
+            fps,
+            level: self.level.clone().map_or(OnLevel::Only, OnLevel::Named),
+        }
+    }
 }
 
 /// The random numbers and the settings of scenarios.

@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 use serde_json::Value;
 
-use super::arguments::ReplaceOptions;
+use super::arguments::{ReplaceOptions, TrackOptions};
 use super::documents::DocumentOptions;
 use super::failure::Failure;
-use super::inputs::{FPS, read_options, tracks};
+use super::inputs::{FPS, tracks};
 use super::terminal::talk;
 use super::values::frame_rate;
 use lab::differences::{NotAReport, names as file_names, of_reports, of_tracks};
@@ -20,7 +19,7 @@ use runs::outputs::Outputs;
 use scenario::input;
 use scenario::kinds::is_scenario;
 use scenario::quote::shown;
-use scenario::trajectories::{ReadOptions, Tracks, UNITS, endings};
+use scenario::trajectories::{ReadOptions, Tracks, endings};
 
 #[derive(Args)]
 pub struct CompareOptions {
@@ -31,9 +30,8 @@ pub struct CompareOptions {
     pub a: PathBuf,
     /// B: a file of the same kind; a result and a recording can be compared, too
     pub b: PathBuf,
-    /// Unit of the coordinates in trajectory files [default: that of the file, else m]
-    #[arg(long, value_parser = PossibleValuesParser::new(UNITS))]
-    pub unit: Option<String>,
+    #[command(flatten)]
+    pub tracks: TrackOptions,
     /// Frames per second of trajectory files [default: that of the file]
     #[arg(long, value_name = "N", value_parser = frame_rate)]
     pub fps: Option<f64>,
@@ -53,7 +51,7 @@ enum Input {
 }
 
 pub fn run(options: &CompareOptions) -> Result<(), Failure> {
-    let read = read_options(&options.unit, options.fps);
+    let read = options.tracks.reading(options.fps);
     let paths = [&options.a, &options.b];
     let mut outputs = Outputs::new(options.replace.force);
     outputs.reads("A,", paths[0]);

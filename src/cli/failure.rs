@@ -145,9 +145,7 @@ impl From<TrajectoryError> for Failure {
         match error {
             TrajectoryError::Unwritten { .. } => Self::Output(error.to_string()),
             TrajectoryError::FrameRate { .. } => Self::Input(format!("--trajectory-fps: {error}")),
-            TrajectoryError::UnknownFormat(_) | TrajectoryError::Building(_) => {
-                Self::Input(format!("--trajectory {error}"))
-            }
+            TrajectoryError::UnknownFormat(_) => Self::Input(format!("--trajectory {error}")),
         }
     }
 }

@@ -12,7 +12,7 @@ use runs::case::Source;
 use runs::outputs::Outputs;
 use scenario::floor_plan::{self, FloorPlan, is_plan};
 use scenario::quote::shown;
-use scenario::trajectories::{self, ReadOptions, Tracks, Unit};
+use scenario::trajectories::{self, ReadOptions, Tracks};
 use scenario::{Draft, Scenario, Setting};
 
 /// The default profile is the paper's, as files of earlier versions expect; it is not for questions about real people.
@@ -127,12 +127,6 @@ pub fn in_order((first, from): (&str, f64), (second, to): (&str, f64)) -> Result
         ))),
         false => Ok(()),
     }
-}
-
-/// How to read trajectories whose unit and frame rate the command line gives.
-pub fn read_options(unit: &Option<String>, fps: Option<f64>) -> ReadOptions {
-    let unit = unit.as_deref().and_then(Unit::named);
-    ReadOptions { unit, fps }
 }
 
 /// The option for the frame rate of trajectories.

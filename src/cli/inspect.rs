@@ -13,6 +13,7 @@ use super::values::{id, is_page, recording, seconds};
 use super::watch::Progress;
 use super::{memory, moment, output};
 use ::output::document::{Block, Document, Findings, Names};
+use ::output::drawing::Drawing;
 use ::output::html::facts;
 use ::output::recording::check_enabled;
 use ::output::table::Table;
@@ -87,7 +88,13 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     for (k, &(id, i)) in inspected.iter().enumerate() {
         let breakdown = breakdown(&simulation, id, i)?;
         say(match as_json {
-            true => format!("{}{}", if k > 0 { "," } else { "" }, json!(breakdown)),
+            true => {
+                let mut agent = json!(breakdown);
+                if let Some(level) = level(&simulation, i) {
+                    agent["level"] = json!(level);
+                }
+                format!("{}{agent}", if k > 0 { "," } else { "" })
+            }
             false => printable(&format!("\n{}{breakdown}", in_building(&simulation, i))),
         })?;
     }
@@ -103,21 +110,37 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
 /// A line with the place of agent `i` in its building; empty on a single floor.
 fn in_building(simulation: &Simulation, i: usize) -> String {
     let p = simulation.frame().agents.position[i];
-    simulation.scene().levels.as_ref().map_or(String::new(), |levels| {
-        let (place, name) = (levels.in_building(p), &levels.all()[levels.level(p)].name);
-        format!(
-            "on `{}` at ({:.4}, {:.4}), {:.2} m high; positions below are those of levels side by side\n",
-            shown(name),
-            place.x,
-            place.y,
-            levels.height(p)
-        )
-    })
+    simulation
+        .scene()
+        .levels
+        .as_ref()
+        .map_or(String::new(), |levels| {
+            let (place, name) = (levels.in_building(p), &levels.all()[levels.level(p)].name);
+            format!(
+                "on `{}` at ({:.4}, {:.4}), {:.2} m high\n",
+                shown(name),
+                place.x,
+                place.y,
+                levels.height(p)
+            )
+        })
 }
 
+/// The name of the level of agent `i`; `None` on a single floor.
+fn level(simulation: &Simulation, i: usize) -> Option<&str> {
+    let levels = simulation.scene().levels.as_ref()?;
+    let number = levels.level(simulation.frame().agents.position[i]);
+    Some(&levels.all()[number].name)
+}
+
+/// The breakdown of an agent, in a building with its points at their places there.
 fn breakdown(simulation: &Simulation, id: u32, i: usize) -> Result<Breakdown, Failure> {
-    Breakdown::of(simulation, i)
-        .ok_or_else(|| Failure::Output(format!("--agent {id}: the frame has no densities")))
+    let mut breakdown = Breakdown::of(simulation, i)
+        .ok_or_else(|| Failure::Output(format!("--agent {id}: the frame has no densities")))?;
+    if let Some(drawing) = Drawing::of(simulation.scene()) {
+        drawing.in_building(&mut breakdown);
+    }
+    Ok(breakdown)
 }
 
 /// The breakdowns of agents, given by their ids and indices, for readers and programs: a row for each number.

@@ -3,13 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 use serde_json::{Value, json};
 
-use super::arguments::{ProgramOptions, use_threads};
+use super::arguments::{ProgramOptions, TrackOptions, use_threads};
 use super::failure::Failure;
 use super::frames::{Run, recorded, tracked};
-use super::inputs::read_options;
 use super::terminal::tell;
 use super::values::{frame_rate, page};
 use super::watch::bar;
@@ -17,7 +15,7 @@ use output::page::{EmbeddedViewer, Moment, Page, PageOptions as Content};
 use output::picture::{Crowd, Picture};
 use output::results::{pairs, reproducible, results, section};
 use runs::outputs::{Manner, Outputs};
-use scenario::trajectories::{UNITS, endings};
+use scenario::trajectories::endings;
 
 /// Where densities come from, in words.
 const DENSITIES: &str =
@@ -36,9 +34,8 @@ pub struct PageOptions {
     /// Floor plan of a trajectory file (WKT, GeoJSON, JuPedSim XML), or `none` [default: that of the file]
     #[arg(long, value_name = "FILE|none")]
     pub geometry: Option<PathBuf>,
-    /// Unit of the coordinates in a trajectory file [default: that of the file, else m]
-    #[arg(long, value_parser = PossibleValuesParser::new(UNITS))]
-    pub unit: Option<String>,
+    #[command(flatten)]
+    pub tracks: TrackOptions,
     /// Frame rate of a trajectory file that does not have it
     #[arg(long, value_name = "N", value_parser = frame_rate)]
     pub trajectory_fps: Option<f64>,
@@ -89,7 +86,8 @@ fn open(options: &PageOptions, outputs: &mut Outputs) -> Result<Run, Failure> {
         outputs.reads("the recording", path);
         let given = [
             ("--geometry", options.geometry.is_some()),
-            ("--unit", options.unit.is_some()),
+            ("--unit", options.tracks.unit.is_some()),
+            ("--level", options.tracks.level.is_some()),
             ("--trajectory-fps", options.trajectory_fps.is_some()),
         ];
         if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
@@ -102,7 +100,7 @@ fn open(options: &PageOptions, outputs: &mut Outputs) -> Result<Run, Failure> {
         let problem = "--page-viewer is for recordings: the Rerun viewer shows no trajectory files";
         return Err(Failure::Input(problem.to_owned()));
     }
-    let read = read_options(&options.unit, options.trajectory_fps);
+    let read = options.tracks.reading(options.trajectory_fps);
     let plan = options.geometry.as_deref();
     tracked::open(path, &read, plan, &["density", "speed"], outputs)
 }
@@ -128,6 +126,7 @@ fn write(
     let picture = Picture {
         observed: &run.observed,
         labels: &run.labels,
+        drawing: run.drawing.as_ref(),
         ..Picture::of_scene((run.frames.scene(), &nobody), String::new(), run.view)
     };
     let mut page = Page::create(out, &picture, &content)?;

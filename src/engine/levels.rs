@@ -8,14 +8,18 @@
 
 use std::ops::Range;
 
-use crate::math::Vector;
+use crate::geometry::{Area, Ring};
+use crate::math::{Vector, bounds};
 
 /// How far beyond a join people are who have just walked across it, meters: farther than a step, and shorter than the
 /// floor of the next level that continues there.
 const BEYOND: f64 = 0.5;
 
-/// Levels lie this far apart, meters: farther than anybody sees.
+/// Levels lie this far apart, meters.
 const GAP: f64 = 25.0;
+
+/// The farthest that anybody may see, meters: the floors behind exits reach up to 7 m into the gap between two levels.
+pub const FARTHEST: f64 = 17.0;
 
 /// A level: a plane that may slope.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,9 +35,17 @@ pub struct Level {
     /// The preferred speed of those who walk up and of those who walk down is multiplied by this. It is that along the
     /// slope.
     pub speed_factors: [f64; 2],
+    /// Where people walk on it, at its place in the building.
+    pub floor: Vec<Area>,
 }
 
 impl Level {
+    /// The lower left and the upper right corner of the rectangle around its floor in the building, meters.
+    pub fn corners(&self) -> [Vector; 2] {
+        let outlines = self.floor.iter().map(|area| &area.exterior);
+        bounds(outlines.flat_map(Ring::points).copied()).unwrap_or_default()
+    }
+
     /// The height of a point of the building on this level, meters.
     pub fn height(&self, p: Vector) -> f64 {
         self.elevation + self.rise.dot(&(p - self.at))
@@ -79,6 +91,14 @@ impl Join {
         (a + (b - a) * self.part(p).clamp(0.0, 1.0) - p).norm_squared()
     }
 
+    /// The part of the way from `p` to `q` after which it crosses the edge from before it, from 0 to 1.
+    pub fn crossed(&self, p: Vector, q: Vector) -> Option<f64> {
+        let (from, to) = (self.side(p), self.side(q));
+        let part = (from > 0.0 && to < 0.0).then(|| from / (from - to))?;
+        let is_between = (0.0..=1.0).contains(&self.part(p + (q - p) * part));
+        is_between.then_some(part)
+    }
+
     /// Positive on the left of the way from its first to its second end.
     fn side(&self, p: Vector) -> f64 {
         let [a, b] = self.line;
@@ -112,8 +132,9 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Levels of a building whose floors lie between two `corners`, lower left and upper right, meters.
-    pub fn new(corners: [Vector; 2], levels: Vec<Level>) -> Self {
+    /// Levels of a building, not joined yet.
+    pub fn new(levels: Vec<Level>) -> Self {
+        let corners = bounds(levels.iter().flat_map(Level::corners)).unwrap_or_default();
         let spacing = (corners[1].x - corners[0].x + GAP).ceil();
         Self {
             corners,
@@ -158,6 +179,11 @@ impl Levels {
     /// The place of `p` in the building, meters.
     pub fn in_building(&self, p: Vector) -> Vector {
         p - self.way(self.level(p) as i32)
+    }
+
+    /// The place on the level of `other` with the same place in the building as `p`, meters.
+    pub fn on_level_of(&self, other: Vector, p: Vector) -> Vector {
+        self.in_building(p) + (other - self.in_building(other))
     }
 
     /// The height of somebody at `p`, meters.

@@ -14,14 +14,14 @@ pub mod limits;
 
 pub mod period;
 
-pub mod levels;
-
 #[doc(hidden)]
 pub mod random;
 
 pub mod distribution;
 
 pub mod geometry;
+
+pub mod levels;
 
 pub mod routes;
 

@@ -182,9 +182,13 @@ pub fn zone_name(zone: &Zone) -> String {
     }
 }
 
-/// Parallel lines that fill a ring, this far apart, meters.
-pub fn hatching(ring: &Ring, apart: f64) -> Vec<[Vector; 2]> {
-    let across = direction(Vector::new(1.0, -1.0));
+/// The direction from one line of hatched zones to the next.
+pub fn across_zones() -> Vector {
+    direction(Vector::new(1.0, -1.0))
+}
+
+/// Parallel lines that fill a ring, this far apart in a direction of length 1, meters.
+pub fn hatching(ring: &Ring, across: Vector, apart: f64) -> Vec<[Vector; 2]> {
     let along = perpendicular(across);
     let corners = ring.points();
     let places = corners

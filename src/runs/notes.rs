@@ -23,12 +23,8 @@ pub fn of(run: &Run) -> Vec<String> {
         .chain(idle_pushes(run))
         .chain(early(run))
         .chain(unseen(run));
-    let levels = run.simulation.scene().levels.as_ref();
-    let in_building = |note: String| match levels {
-        Some(levels) => in_building(levels, &note),
-        None => note,
-    };
-    all.map(|note| in_building(tidy(&note))).collect()
+    let levels = run.simulation.scene().levels.as_deref();
+    all.map(|note| in_building(levels, &tidy(&note))).collect()
 }
 
 /// Notes on agents that were moved, and on stopped moves and clamped speeds if they are 1 % of all moves or more.

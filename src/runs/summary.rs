@@ -193,11 +193,11 @@ impl Summary {
         let of_highest = of_highest.map(|highest| (&mut highest.at, &mut highest.level));
         let of_stuck = self.stuck_because.iter_mut();
         let of_stuck = of_stuck.map(|group| {
-            group.cause = in_building(levels, &group.cause);
+            group.cause = in_building(Some(levels), &group.cause);
             (&mut group.at, &mut group.level)
         });
         let of_queues = self.longest_queues.iter_mut().map(|queue| {
-            queue.before = in_building(levels, &queue.before);
+            queue.before = in_building(Some(levels), &queue.before);
             (&mut queue.at, &mut queue.level)
         });
         for (at, level) in of_highest.chain(of_stuck).chain(of_queues) {

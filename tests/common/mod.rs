@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod bounded;
+pub mod buildings;
 pub mod busy;
 pub mod documents;
 pub mod drawn;

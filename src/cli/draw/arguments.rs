@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use crate::cli::arguments::SceneOptions;
+use crate::cli::arguments::{SceneOptions, TrackOptions};
 use crate::cli::values::{
     Width, dpi, frame_rate, millimeters, picture, positive_seconds, range, seconds, width,
 };
-use scenario::trajectories::{UNITS, endings};
+use scenario::trajectories::endings;
 
 #[derive(Args)]
 pub struct DrawOptions {
@@ -81,9 +81,8 @@ pub struct DrawOptions {
     /// 0.36.3
     #[arg(long, value_name = "DIR")]
     pub page_viewer: Option<PathBuf>,
-    /// Unit of the coordinates in a trajectory file [default: that of the file, else m]
-    #[arg(long, value_parser = PossibleValuesParser::new(UNITS))]
-    pub unit: Option<String>,
+    #[command(flatten)]
+    pub tracks: TrackOptions,
     /// Frames per second of a trajectory file [default: that of the file]
     #[arg(long, value_name = "N", value_parser = frame_rate)]
     pub trajectory_fps: Option<f64>,

@@ -6,14 +6,14 @@ use serde_json::json;
 
 use super::{DrawOptions, extension, print, refuse_settings};
 use crate::cli::failure::Failure;
-use crate::cli::inputs::{TRAJECTORY_FPS, read_options, scenario, tracks};
+use crate::cli::inputs::{TRAJECTORY_FPS, scenario, tracks};
 use crate::cli::moment;
 use crate::cli::terminal::tell;
 use lab::egress::Egress;
 use runs::case::Source;
 use runs::drive::Run;
 use runs::outputs::{Manner, Outputs};
-use scenario::trajectories;
+use scenario::trajectories::{self, OnLevel, ReadOptions};
 
 /// Draws the curve, and prints the table.
 pub fn draw(options: &DrawOptions, out: &Path, mut outputs: Outputs) -> Result<(), Failure> {
@@ -30,7 +30,10 @@ pub fn draw(options: &DrawOptions, out: &Path, mut outputs: Outputs) -> Result<(
             refuse_settings(options, &options.scene)?;
             outputs.reads("the trajectories", path);
             outputs.check()?;
-            let read = read_options(&options.unit, options.trajectory_fps);
+            let read = ReadOptions {
+                level: OnLevel::Any,
+                ..options.tracks.reading(options.trajectory_fps)
+            };
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
             let tracks = tracks(path, &read, TRAJECTORY_FPS)?;
             (stem.into_owned(), Egress::of_tracks(&tracks))

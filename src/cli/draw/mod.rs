@@ -16,10 +16,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::arguments::{SceneOptions, use_threads};
+use super::arguments::{SceneOptions, TrackOptions, use_threads};
 use super::failure::Failure;
 use super::frames::{Run, recorded, tracked};
-use super::inputs::{in_order, read_options};
+use super::inputs::in_order;
 use super::interrupt::Interrupt;
 use super::moment;
 use super::page::PageOptions;
@@ -27,10 +27,12 @@ use super::terminal::tell;
 use super::values::is_page;
 use super::watch::bar;
 use look::{Look, NONE};
+use output::drawing::Drawing;
 use output::picture::{Paths, Picture, Trails};
 use output::plot::{Animation, PAPER_DPI, Print};
 use runs::outputs::{Manner, Outputs};
-use scenario::trajectories;
+use scenario::quote::shown;
+use scenario::{Scenario, suggestion, trajectories};
 
 /// The width of pictures without another one, millimeters: two columns of a paper.
 const WIDTH_MM: f64 = 180.0;
@@ -144,6 +146,7 @@ fn page(options: &DrawOptions, out: PathBuf) -> Result<PageOptions, Failure> {
         ("--field", options.field.is_some()),
         ("--paths", !options.paths.is_empty()),
         ("--egress", options.egress),
+        ("--level", options.tracks.level.is_some()),
         ("--width", options.width.is_some()),
         ("--dpi", options.dpi.is_some()),
         ("--paper", options.paper.is_some()),
@@ -170,7 +173,10 @@ fn page(options: &DrawOptions, out: PathBuf) -> Result<PageOptions, Failure> {
         run,
         out: Some(out),
         geometry: scene.geometry.clone(),
-        unit: options.unit.clone(),
+        tracks: TrackOptions {
+            unit: options.tracks.unit.clone(),
+            level: None,
+        },
         trajectory_fps: options.trajectory_fps,
         page_viewer: options.page_viewer.clone(),
         program: scene.program,
@@ -209,12 +215,16 @@ fn open(
     let run = match extension(path).as_str() {
         "rrd" => {
             refuse_settings(options, &options.scene)?;
+            if options.tracks.level.is_some() {
+                let reason = "--level is for scenarios and trajectory files, not for recordings";
+                return Err(Failure::Input(reason.to_owned()));
+            }
             outputs.reads("the recording", path);
             recorded::open(path)?
         }
         _ if trajectories::has_ending(path) => {
             refuse_settings(options, &options.scene)?;
-            let read = read_options(&options.unit, options.trajectory_fps);
+            let read = options.tracks.reading(options.trajectory_fps);
             let plan = options.scene.geometry.as_deref();
             tracked::open(path, &read, plan, &[color(options, false)], outputs)?
         }
@@ -228,7 +238,7 @@ fn simulate(
     times: &Times,
     outputs: &mut Outputs,
 ) -> Result<(Run, Vec<Paths>), Failure> {
-    if options.unit.is_some() || options.trajectory_fps.is_some() {
+    if options.tracks.unit.is_some() || options.trajectory_fps.is_some() {
         let reason = "--unit and --trajectory-fps are for trajectory files, not for scenarios";
         return Err(Failure::Input(reason.to_owned()));
     }
@@ -241,7 +251,35 @@ fn simulate(
         true => format!("--to {}", options.to.unwrap_or(until)),
         false => format!("--at {}", options.at),
     };
-    Ok((simulated::open(&scenario, until, option)?, paths))
+    let drawing = match &options.tracks.level {
+        Some(name) => Some(drawing_of_level(&scenario, name)?),
+        None => Drawing::of(&scenario.scene),
+    };
+    if drawing.is_some() && !paths.is_empty() {
+        let reason =
+            "--paths shows routes on one floor, and this is a building with several levels";
+        return Err(Failure::Input(reason.to_owned()));
+    }
+    Ok((simulated::open(&scenario, drawing, (until, option))?, paths))
+}
+
+/// The drawing of the level of this name.
+fn drawing_of_level(scenario: &Scenario, name: &str) -> Result<Drawing, Failure> {
+    let Some(levels) = &scenario.scene.levels else {
+        let reason = "--level is for buildings, and this scenario has no `levels`";
+        return Err(Failure::Input(reason.to_owned()));
+    };
+    let names = || levels.all().iter().map(|level| level.name.as_str());
+    let number = names().position(|own| own == name).ok_or_else(|| {
+        let near = suggestion(name, names());
+        let all: Vec<String> = names().map(|name| format!("`{}`", shown(name))).collect();
+        Failure::Input(format!(
+            "--level: there is no level named `{}`{near}; there are {}",
+            shown(name),
+            all.join(", ")
+        ))
+    })?;
+    Ok(Drawing::of_level(levels.clone(), number))
 }
 
 /// Rejects settings of scenarios for runs that are not simulated.
@@ -339,6 +377,7 @@ fn draw(
             labels: &run.labels,
             paths: std::mem::take(&mut paths),
             body_mass: run.body_mass,
+            drawing: run.drawing.as_ref(),
             ..Picture::of_scene(
                 (run.frames.scene(), run.frames.crowd()),
                 run.title.clone(),

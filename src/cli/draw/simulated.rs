@@ -6,6 +6,7 @@ use crate::cli::moment;
 use crate::cli::watch::Progress;
 use engine::scene::Scene;
 use engine::simulation::Simulation;
+use output::drawing::{Drawing, Drawn};
 use output::picture::Crowd;
 use scenario::Scenario;
 
@@ -37,6 +38,9 @@ const COLUMNS: [(&str, Value); 12] = [
 
 struct Simulated {
     simulation: Simulation,
+    /// The scene and the crowd as they are drawn.
+    scene: Scene,
+    drawing: Option<Drawing>,
     crowd: Crowd,
     progress: Progress,
     /// The option that asks for the time at which agents must be left.
@@ -45,13 +49,20 @@ struct Simulated {
 }
 
 /// The run of a scenario until a time, seconds, which `option` asks for.
-pub fn open(scenario: &Scenario, until: f64, option: String) -> Result<Run, Failure> {
+pub fn open(
+    scenario: &Scenario,
+    drawing: Option<Drawing>,
+    (until, option): (f64, String),
+) -> Result<Run, Failure> {
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     let last = simulation.frame().clock.frame_at(until);
     simulation.request_density_until(last + 1);
     simulation.evaluate()?;
+    let drawn = Drawn::with(scenario, drawing);
     let frames = Simulated {
-        crowd: Crowd::of(&simulation),
+        crowd: Crowd::of(&simulation, drawn.drawing.as_ref()),
+        scene: drawn.scene.clone().into_owned(),
+        drawing: drawn.drawing.clone(),
         simulation,
         progress: Progress::new(until),
         option,
@@ -59,13 +70,13 @@ pub fn open(scenario: &Scenario, until: f64, option: String) -> Result<Run, Fail
     };
     Ok(Run {
         body_mass: scenario.mass_on_walls(),
-        ..Run::of(scenario, Box::new(frames))
+        ..Run::of(scenario, drawn, Box::new(frames))
     })
 }
 
 impl Frames for Simulated {
     fn scene(&self) -> &Scene {
-        self.simulation.scene()
+        &self.scene
     }
 
     fn simulation(&self) -> Option<&Simulation> {
@@ -77,7 +88,7 @@ impl Frames for Simulated {
         let by = (self.option.as_str(), &self.progress);
         moment::advance(simulation, time.min(self.until), by)?;
         simulation.evaluate()?;
-        self.crowd = Crowd::of(simulation);
+        self.crowd = Crowd::of(simulation, self.drawing.as_ref());
         Ok(())
     }
 

@@ -10,6 +10,7 @@ use engine::scene::{Region, Scene};
 use engine::simulation::Simulation;
 use lab::measure::{Behind, Kernel, MOST_HIDDEN, Site, parts};
 use output::colors::{DENSITY_RANGE, SPEED_RANGE};
+use output::drawing::{Drawing, Drawn};
 use output::picture::Crowd;
 use scenario::Scenario;
 use scenario::floor_plan::{Label, Place};
@@ -61,6 +62,8 @@ pub struct Run {
     pub speed_range: [f64; 2],
     /// The support radius of the kernel, meters.
     pub support_radius: f64,
+    /// How the levels of a building lie.
+    pub drawing: Option<Drawing>,
     /// The places that its measurements observe.
     pub observed: Vec<(String, Observed)>,
     /// What its floor plan names.
@@ -78,17 +81,17 @@ pub struct Run {
 }
 
 impl Run {
-    /// A run of a scenario, with its view, ranges and places.
-    pub fn of(scenario: &Scenario, frames: Box<dyn Frames>) -> Self {
-        let measurements = scenario.measurements.iter();
+    /// A run of a scenario as it is drawn, with its ranges and places.
+    pub fn of(scenario: &Scenario, drawn: Drawn, frames: Box<dyn Frames>) -> Self {
         Self {
             title: scenario.name.clone(),
-            view: scenario.view.region,
+            view: drawn.view,
+            drawing: drawn.drawing,
             density_range: scenario.view.density_range,
             speed_range: scenario.view.speed_range,
             support_radius: support_radius(frames.scene()),
-            observed: measurements.flat_map(|one| one.observed()).collect(),
-            labels: scenario.labels.clone(),
+            observed: drawn.observed,
+            labels: drawn.labels,
             places: scenario.places.clone(),
             body_mass: None,
             times: None,
@@ -111,6 +114,7 @@ impl Run {
             density_range: [0.0, DENSITY_RANGE.into()],
             speed_range: [0.0, SPEED_RANGE.into()],
             support_radius: support_radius(frames.scene()),
+            drawing: None,
             observed: Vec::new(),
             labels: Vec::new(),
             places: Vec::new(),

@@ -10,6 +10,7 @@ use engine::agents::REFERENCE_RADIUS;
 use engine::geometry::{Polygon, assemble};
 use engine::math::Vector;
 use engine::scene::Scene;
+use output::drawing::Drawn;
 use output::picture::Crowd;
 use output::recording::Recorded;
 use scenario::Scenario;
@@ -32,8 +33,9 @@ pub fn open(path: &Path) -> Result<Run, Failure> {
     let title = recorded.title().unwrap_or_default().to_owned();
     let run = match &scenario {
         Some(scenario) => {
-            let frames = Over::new(recorded, times, scenario.scene.clone());
-            Run::of(scenario, Box::new(frames))
+            let drawn = Drawn::of(scenario);
+            let frames = Over::new(recorded, times, drawn.scene.clone().into_owned());
+            Run::of(scenario, drawn, Box::new(frames))
         }
         None => {
             let corners = recorded.walls().concat().into_iter();

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use crate::cli::arguments::{PrintOptions, ProgramOptions};
+use crate::cli::arguments::{PrintOptions, ProgramOptions, TrackOptions};
 use crate::cli::documents::DocumentOptions;
 use crate::cli::values::{
     CutOff, cut_off, frame_rate, length, line, moment, passages, positive_seconds, region, segments,
 };
 use analysis::crossing::{Line, Passages};
 use engine::scene::Region;
-use scenario::trajectories::{UNITS, endings};
+use scenario::trajectories::endings;
 
 #[derive(Args)]
 pub struct MeasureOptions {
@@ -26,9 +26,8 @@ pub struct MeasureOptions {
     /// file, else none]
     #[arg(long, value_name = "FILE")]
     pub geometry: Option<PathBuf>,
-    /// Unit of the coordinates [default: that of the file, else m]
-    #[arg(long, value_parser = PossibleValuesParser::new(UNITS))]
-    pub unit: Option<String>,
+    #[command(flatten)]
+    pub tracks: TrackOptions,
     /// Frames per second [default: that of the file]
     #[arg(long, value_name = "N", value_parser = frame_rate)]
     pub fps: Option<f64>,

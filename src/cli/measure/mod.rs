@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use super::arguments::use_threads;
 use super::documents::add_folder;
 use super::failure::Failure;
-use super::inputs::{FPS, in_order, read_options, site, tracks};
+use super::inputs::{FPS, in_order, site, tracks};
 use super::terminal::talk;
 use super::watch::bar;
 use analysis::site::Site;
@@ -31,7 +31,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
         in_order(("--from", from), ("--until", until))?;
     }
     check_outputs(options, &folder)?;
-    let read = read_options(&options.unit, options.fps);
+    let read = options.tracks.reading(options.fps);
     let tracks = tracks(&options.trajectory, &read, FPS)?;
     let site = site(&options.trajectory, options.geometry.as_deref(), &tracks)?;
     let what = what(options, &tracks);

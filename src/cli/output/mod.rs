@@ -16,6 +16,7 @@ use page::PageOfRun;
 
 use engine::clock::Clock;
 use engine::simulation::Simulation;
+use output::drawing::Drawn;
 use output::page::EmbeddedViewer;
 use output::recording::{
     DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer, record_moment,
@@ -25,7 +26,6 @@ use runs::drive::{End, Observer, Run};
 use runs::identity::Identity;
 use runs::outputs::{Manner, Outputs};
 use scenario::Scenario;
-use scenario::measurements::Measurement;
 
 /// Rejects outputs that cannot be written, before any file is touched.
 pub fn check(
@@ -282,14 +282,15 @@ pub fn save_moment(
 /// The options of a recording that begins at the time `from`.
 pub fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> RecordingOptions {
     let (view, recorded) = (scenario.view, from..scenario.duration_secs);
-    let measured = scenario.measurements.iter().flat_map(Measurement::observed);
+    let drawn = Drawn::of(scenario);
+    let measured = drawn.observed.into_iter();
     RecordingOptions {
         id: Identity::of_run(scenario).to_string(),
         application: format!("sandbox {}", scenario.name),
         title: title(scenario),
         description: scenario.description.clone(),
         document: format!("## Scenario\n```json\n{}\n```\n", scenario.to_text()),
-        view: view.region,
+        view: drawn.view,
         density_range: view.density_range,
         speed_range: view.speed_range,
         opens_at: view.opens_at_secs.filter(|at| recorded.contains(at)),
@@ -300,7 +301,7 @@ pub fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> 
         measured: measured
             .map(|(name, place)| (name, place.outline()))
             .collect(),
-        labels: scenario.labels.clone(),
+        labels: drawn.labels,
         entering: scenario.entering,
     }
 }

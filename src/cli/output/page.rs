@@ -9,6 +9,7 @@ use crate::cli::failure::Failure;
 use crate::cli::results as report;
 use engine::breakdown::Breakdown;
 use engine::simulation::Simulation;
+use output::drawing::{Drawing, Drawn};
 use output::events::Events;
 use output::html::escape;
 use output::page::{EmbeddedViewer, Moment, Page, PageOptions};
@@ -24,6 +25,7 @@ pub struct PageOfRun {
     due: RecordedFrames,
     debug: DebugAgents,
     events: Events,
+    drawing: Option<Drawing>,
     /// The Rerun viewer, and the recording that it shows, which is complete before the page is.
     viewer: Option<(EmbeddedViewer, PathBuf)>,
     /// The results; `None` until the run has ended.
@@ -54,6 +56,7 @@ impl PageOfRun {
             due: RecordedFrames::new(record, &run.simulation),
             debug,
             events: Events::new(run.scenario.entering),
+            drawing: Drawing::of(run.simulation.scene()),
             viewer,
             results: None,
         })
@@ -64,7 +67,7 @@ impl Observer<Failure> for PageOfRun {
     fn observe(&mut self, run: &Run, _: f64, then: ControlFlow<End>) -> Result<(), Failure> {
         if self.due.now(&run.simulation) {
             let new = self.events.new_lines(&run.simulation);
-            let crowd = Crowd::of(&run.simulation);
+            let crowd = Crowd::of(&run.simulation, self.drawing.as_ref());
             let events = (self.events.evacuated, new);
             let moment = Moment::of(&run.simulation, &crowd, events, &self.debug);
             self.page.add(&moment)?;
@@ -91,17 +94,10 @@ fn create(
     (scenario, simulation): (&Scenario, &Simulation),
     options: &PageOptions,
 ) -> Result<Page, Failure> {
-    let (title, view) = (String::new(), scenario.view.region);
-    let observed: Vec<_> = scenario
-        .measurements
-        .iter()
-        .flat_map(|one| one.observed())
-        .collect();
-    let nobody = Crowd::default();
+    let (drawn, nobody) = (Drawn::of(scenario), Crowd::default());
     let picture = Picture {
-        observed: &observed,
-        labels: &scenario.labels,
-        ..Picture::of(simulation, &nobody, title, view)
+        simulation: Some(simulation),
+        ..Picture::of(&drawn, &nobody, String::new())
     };
     Ok(Page::create(path, &picture, options)?)
 }
@@ -139,7 +135,8 @@ pub fn save_moment(
         ..options(scenario, &debug, now)
     };
     let mut page = create(path, (scenario, simulation), &options)?;
-    let crowd = Crowd::of(simulation);
+    let drawing = Drawing::of(simulation.scene());
+    let crowd = Crowd::of(simulation, drawing.as_ref());
     page.add(&Moment::of(simulation, &crowd, (0, Vec::new()), &debug))?;
     let title = format!("Forces at {now:.2} s");
     Ok(page.finish(&section(&title, &numbers))?)

@@ -56,6 +56,13 @@ impl Ring {
         &self.points
     }
 
+    /// The same ring at another place, meters away.
+    #[must_use]
+    pub fn moved(mut self, by: Vector) -> Self {
+        self.points.iter_mut().for_each(|point| *point += by);
+        self
+    }
+
     /// The enclosed area in m²; always positive.
     pub fn area(&self) -> f64 {
         signed_area(&self.points)
@@ -113,6 +120,16 @@ impl Area {
     /// The outline, then the holes.
     pub fn rings(&self) -> impl Iterator<Item = &Ring> {
         std::iter::once(&self.exterior).chain(&self.holes)
+    }
+
+    /// The same area at another place, meters away.
+    #[must_use]
+    pub fn moved(self, by: Vector) -> Self {
+        let holes = self.holes.into_iter();
+        Self {
+            exterior: self.exterior.moved(by),
+            holes: holes.map(|hole| hole.moved(by)).collect(),
+        }
     }
 
     /// The area in m², without the holes.

@@ -145,7 +145,7 @@ impl Crowd {
             let plan = plan.as_ref()?;
             let side = plan.toward?;
             let here = plan.located.triangle_at(rooms, p)?;
-            let length = rooms.length_to(p, here, side);
+            let length = rooms.length_to(rooms.floor.in_building(p), here, side);
             Some((side.index(), length.unwrap_or(0.0)))
         });
         let lengths = lengths_of(toward.collect(), rooms.sides().len());

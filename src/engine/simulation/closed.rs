@@ -8,9 +8,6 @@ use crate::math::Vector;
 use crate::routes::{Rooms, Side};
 use crate::scene::Scene;
 
-/// A way goes on this far behind an opening, meters.
-const BEYOND: f64 = 1e-3;
-
 /// A way that closed doors block.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Closed {
@@ -34,7 +31,8 @@ impl Simulation {
         let rooms = scene.rooms()?;
         let p = self.crowd.agents.position[i];
         let here = rooms.floor.locate_or_nearest(None, p)?;
-        if side.is_none() && rooms.length_to_goal(p, here, goal).is_some() {
+        let at = rooms.floor.in_building(p);
+        if side.is_none() && rooms.length_to_goal(at, here, goal).is_some() {
             return None;
         }
         let sides = match &side {
@@ -68,14 +66,17 @@ impl Simulation {
         let (rooms, goal) = (self.fixed.scene.rooms()?, usize::from(goal));
         let open = self.open_places();
         let onward = lengths(rooms, goal, &open);
-        let (mut p, mut side) = (self.crowd.agents.position[i], side);
-        let mut here = rooms.floor.locate_or_nearest(None, p)?;
+        let (start, mut side) = (self.crowd.agents.position[i], side);
+        let mut here = rooms.floor.locate_or_nearest(None, start)?;
+        let mut p = rooms.floor.in_building(start);
+        let shift = start - p;
         let mut points = Vec::new();
         for _ in 0..rooms.sides().len() {
             points.extend(rooms.course((p, here), goal, Some(side)));
-            p = points.last()? + rooms.ahead(side) * BEYOND;
+            let beyond = rooms.beyond(side, *points.last()?);
+            p = rooms.floor.in_building(beyond);
             points.push(p);
-            here = rooms.floor.locate_or_nearest(None, p)?;
+            here = rooms.floor.locate_or_nearest(None, beyond)?;
             let sides = rooms.sides_in(rooms.room(here)).iter().copied();
             let sides = sides.filter(|&side| !is_shut(rooms, side, &open));
             let lengths = sides.filter_map(|side| {
@@ -90,7 +91,8 @@ impl Simulation {
             }
         }
         points.extend(rooms.course((p, here), goal, None));
-        Some(points)
+        // As seen from the agent.
+        Some(points.into_iter().map(|point| point + shift).collect())
     }
 }
 

@@ -202,7 +202,8 @@ impl Crowd {
         self.look_ahead_to(scene, usize::from(goal));
         let old = self.agents.plan[i];
         let (p, here) = (self.agents.position[i], due.located.triangle());
-        let passed = (due.from).and_then(|from| rooms.side_between(from, rooms.room(here), p));
+        let at = rooms.floor.in_building(p);
+        let passed = (due.from).and_then(|from| rooms.side_between(from, rooms.room(here), at));
         if let Some(side) = passed {
             self.progress.sides[side.index()].pass();
         }
@@ -256,7 +257,8 @@ impl Crowd {
         let (p, here) = (self.agents.position[due.agent], due.located.triangle());
         let length = |side| {
             let known = due.routes.through(side).map(|[length, _]| length);
-            let length = known.or_else(|| rooms.length_to(p, here, side));
+            let at = rooms.floor.in_building(p);
+            let length = known.or_else(|| rooms.length_to(at, here, side));
             length.unwrap_or(0.0)
         };
         if let Some(side) = left {

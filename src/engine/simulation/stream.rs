@@ -12,6 +12,8 @@ pub(super) const BEFORE: f64 = 2.0;
 const LEAST_FLOW: f64 = 0.05;
 /// The width of the bins of distances in which agents are counted, meters.
 const BIN: f64 = 0.1;
+/// Bins are searched for people in stretches of this many.
+const STRETCH: usize = 32;
 /// Larger distances are clamped to this, meters.
 const FARTHEST_BIN: f64 = 500.0;
 
@@ -57,12 +59,23 @@ impl Stream {
     /// walk there at `speed`, and pass one after the other at a flow. An agent at that distance that walks no faster
     /// waits only in a queue.
     pub fn clear_after(&self, length: f64, speed: f64, flow: f64) -> f64 {
-        let bins = self.nearer.windows(2).take(bin_of(length)).enumerate();
-        let coming = bins.filter(|(_, counts)| counts[1] > counts[0]);
-        coming.fold(0.0, |clear: f64, (bin, counts)| {
-            let arrives = bin as f64 * BIN / speed;
-            clear.max(arrives) + f64::from(counts[1] - counts[0]) / flow
-        })
+        let bins = bin_of(length).min(self.nearer.len().saturating_sub(1));
+        let mut clear: f64 = 0.0;
+        for first in (0..bins).step_by(STRETCH) {
+            let counts = &self.nearer[first..=(first + STRETCH).min(bins)];
+            let pairs = counts.iter().zip(&counts[1..]);
+            // In most stretches nobody comes: no branch per bin.
+            if !pairs.fold(false, |comes, (before, next)| comes | (next > before)) {
+                continue;
+            }
+            for (bin, pair) in (first..).zip(counts.windows(2)) {
+                if pair[1] > pair[0] {
+                    let arrives = bin as f64 * BIN / speed;
+                    clear = clear.max(arrives) + f64::from(pair[1] - pair[0]) / flow;
+                }
+            }
+        }
+        clear
     }
 
     /// The number of agents bound for the line.

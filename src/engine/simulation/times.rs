@@ -16,9 +16,6 @@ pub(super) const SINGLE_FILE: f64 = 1.0;
 /// Slower agents are expected to walk at this speed, m/s.
 const SLOWEST: f64 = 0.05;
 
-/// A way through an opening goes on from a point this far behind it, meters.
-const BEYOND: f64 = 1e-3;
-
 /// The times that agents expect.
 pub(super) struct Times<'a> {
     pub rooms: &'a Rooms,
@@ -99,7 +96,8 @@ impl<'a> Times<'a> {
     pub fn prospects(&self, routes: &RoutesOut, onward: &[f64], speed: f64) -> Vec<RouteProspect> {
         let speed = speed.max(SLOWEST);
         let slower = 1.0 / speed - 1.0 / self.scene.preferred_speed.max(SLOWEST);
-        let exact = routes.shortest.filter(|_| !self.rooms.has_one_way());
+        let has_exact = !self.rooms.has_one_way() && !self.rooms.floor.has_levels();
+        let exact = routes.shortest.filter(|_| has_exact);
         let direct = routes.direct.map(|length| RouteProspect {
             side: None,
             length,
@@ -161,10 +159,14 @@ impl Simulation {
                 break;
             };
             // As agents do: the shortest way as long as it leads through the chosen opening.
-            let mut course = routes.course(here, to);
-            let crossing = rooms.first_crossing(here, t, course.iter().copied());
+            let at = rooms.floor.in_building(here);
+            let mut course: Vec<Vector> = routes.course(here, to);
+            for point in &mut course {
+                *point += at - here;
+            }
+            let crossing = rooms.first_crossing(at, t, course.iter().copied());
             if crossing.map(|crossing| crossing.side) != best.side {
-                course = rooms.course((here, t), usize::from(goal), best.side);
+                course = rooms.course((at, t), usize::from(goal), best.side);
             } else if let Some(crossing) = crossing {
                 course.truncate(crossing.after);
                 course.push(crossing.at);
@@ -173,7 +175,7 @@ impl Simulation {
             let Some((side, &end)) = best.side.zip(points.last()) else {
                 break;
             };
-            here = end + rooms.ahead(side) * BEYOND;
+            here = rooms.beyond(side, end);
             back = Some(side.other());
         }
         points

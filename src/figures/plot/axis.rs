@@ -32,6 +32,11 @@ impl Axis {
         }
     }
 
+    /// A linear axis without numbers.
+    pub fn bare(range: [f64; 2]) -> Self {
+        Self::linear("", range).ticked([(range[0], String::new())])
+    }
+
     /// A logarithmic axis.
     pub fn log(label: &str, range: [f64; 2]) -> Self {
         Self {

@@ -3,6 +3,7 @@
 
 mod facts;
 mod held_out;
+mod levels;
 mod limits;
 mod passages;
 mod peaks;

@@ -2,7 +2,9 @@
 
 use super::still::bar;
 use engine::math::Vector;
+use engine::scene::Region;
 use engine::simulation::Simulation;
+use output::drawing::{Drawing, Drawn};
 use output::picture::{Crowd, Field, Picture};
 use output::plot::{Cells, Print, Sheet};
 use scenario::Scenario;
@@ -13,6 +15,7 @@ const MOST: f64 = 800.0;
 
 /// The highest SPH density at an agent in each cell so far, P/m²; 0 where no agent was.
 pub struct Peaks {
+    drawing: Option<Drawing>,
     /// Lower left corner, meters.
     min: Vector,
     /// The side of a cell, meters.
@@ -24,10 +27,13 @@ pub struct Peaks {
 impl Peaks {
     /// A map of what pictures of the scenario show.
     pub fn new(scenario: &Scenario) -> Self {
-        let (min, max) = (scenario.view.region.min, scenario.view.region.max);
+        let drawing = Drawing::of(&scenario.scene);
+        let shown = drawing.as_ref().map(|drawing| drawing.shown);
+        let Region { min, max } = shown.unwrap_or(scenario.view.region);
         let cell = CELL.max((max - min).max() / MOST);
         let count = (max - min).map(|length| (length / cell).ceil().max(1.0));
         Self {
+            drawing,
             min,
             cell,
             columns: count.x as usize,
@@ -39,7 +45,9 @@ impl Peaks {
     pub fn add(&mut self, simulation: &Simulation) {
         let frame = simulation.frame();
         for i in frame.agents.present() {
-            let at = (frame.agents.position[i] - self.min) / self.cell;
+            let p = frame.agents.position[i];
+            let place = self.drawing.as_ref().map_or(p, |drawing| drawing.place(p));
+            let at = (place - self.min) / self.cell;
             let is_inside = at.x >= 0.0 && at.y >= 0.0 && at.x < self.columns as f64;
             let k = at.y as usize * self.columns + at.x as usize;
             let (density, cell) = (frame.fields.density.get(i), self.most.get_mut(k));
@@ -68,12 +76,12 @@ impl Peaks {
             map: bar.map.clone(),
         };
         let crowd = Crowd::default();
-        let scene = (&scenario.scene, &crowd);
+        let drawn = Drawn::of(scenario);
         let picture = Picture {
             field: Some(Field { cells, bar }),
             heading: Some("highest density over the run".to_owned()),
-            labels: &scenario.labels,
-            ..Picture::of_scene(scene, String::new(), scenario.view.region)
+            observed: &[],
+            ..Picture::of(&drawn, &crowd, String::new())
         };
         picture.sheet(print)
     }

@@ -19,9 +19,9 @@ use runs::drive::Run;
 use runs::identity::{ENGINE, Identity, sha256};
 use runs::notes;
 use runs::summary::{JourneyResult, PlaceResult, Summary};
-use scenario::Scenario;
 use scenario::measurements::Measurement;
 use scenario::quote::shown;
+use scenario::{Scenario, in_building};
 
 /// A file that a run reads.
 pub struct InputFile {
@@ -69,11 +69,12 @@ pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> Result<Document
     blocks.push(Block::heading("Settings that differ from the defaults"));
     blocks.push(settings::changed(scenario, "command line"));
     blocks.extend(egress(simulation, &summary));
+    blocks.extend(watched.levels.blocks());
     blocks.push(Block::heading(
         "Flows, densities, levels of service, exposure",
     ));
     let measurements = scenario.measurements.iter();
-    blocks.extend(measurements.filter_map(|one| measured(one, &summary)));
+    blocks.extend(measurements.filter_map(|one| measured(one, scenario, &summary)));
     blocks.push(Block::text(facts::DENSITY));
     blocks.push(Block::heading("Pictures"));
     blocks.extend(pictures);
@@ -220,12 +221,13 @@ fn journeys(journeys: &[JourneyResult]) -> Option<Block> {
 }
 
 /// The values of a measurement with their definitions, and where it observes people; nothing without values.
-fn measured(measurement: &Measurement, summary: &Summary) -> Option<Block> {
+fn measured(measurement: &Measurement, scenario: &Scenario, summary: &Summary) -> Option<Block> {
     let facts = facts::measured(measurement, summary);
+    let levels = scenario.scene.levels.as_deref();
     let places = measurement.observed();
     let mut about: Vec<String> = places
         .iter()
-        .map(|(_, place)| format!("Where: {place}."))
+        .map(|(_, place)| format!("Where: {}.", in_building(levels, &place.to_string())))
         .collect();
     if measurement.about().has_thresholds {
         about.push("Thresholds are from the literature, not safety limits.".to_owned());

@@ -3,11 +3,11 @@
 use engine::math::Vector;
 use engine::simulation::Simulation;
 use output::colors::ColorMap;
+use output::drawing::Drawn;
 use output::picture::{Coloring, Crowd, Picture};
 use output::plot::{ColorBar, Print, Sheet};
 use output::scenery;
 use scenario::Scenario;
-use scenario::measurements::Observed;
 
 /// The agents at one moment: far less than the state of the run.
 #[derive(Debug, Clone)]
@@ -52,10 +52,11 @@ impl Still {
     /// The picture, with agents in the colors of their densities.
     pub fn sheet(&self, scenario: &Scenario, print: &Print) -> Sheet {
         let numbers = |values: &[f32]| values.iter().map(|&x| f64::from(x)).collect::<Vec<f64>>();
+        let drawn = Drawn::of(scenario);
         let crowd = Crowd {
             time: self.time,
             id: (0..self.count() as i64).collect(),
-            position: self.position.clone(),
+            position: self.position.iter().map(|&p| drawn.place(p)).collect(),
             radius: numbers(&self.radius),
             mass: vec![1.0; self.count()],
             velocity: vec![None; self.count()],
@@ -64,16 +65,10 @@ impl Still {
             values: numbers(&self.density),
             bar: bar(scenario),
         };
-        let measurements = scenario.measurements.iter();
-        let observed: Vec<(String, Observed)> =
-            measurements.flat_map(|one| one.observed()).collect();
-        let scene = (&scenario.scene, &crowd);
         let picture = Picture {
             coloring: Some(coloring),
             closed: &self.closed,
-            observed: &observed,
-            labels: &scenario.labels,
-            ..Picture::of_scene(scene, String::new(), scenario.view.region)
+            ..Picture::of(&drawn, &crowd, String::new())
         };
         picture.sheet(print)
     }

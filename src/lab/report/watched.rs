@@ -1,5 +1,6 @@
 //! What a report sees of its run while it runs.
 
+use super::levels::OnLevels;
 use super::passages::Passages;
 use super::peaks::Peaks;
 use super::still::Still;
@@ -24,6 +25,8 @@ pub struct Watched {
     pub peaks: Peaks,
     /// The people who enter, and those who pass lines.
     pub passages: Passages,
+    /// The people on each level of a building.
+    pub levels: OnLevels,
 }
 
 impl Watched {
@@ -40,6 +43,7 @@ impl Watched {
             halves: Vec::new(),
             peaks: Peaks::new(scenario),
             passages: Passages::new(scenario),
+            levels: OnLevels::new(scenario),
         }
     }
 
@@ -52,6 +56,9 @@ impl Watched {
     pub fn see(&mut self, simulation: &Simulation) {
         let frame = simulation.frame();
         self.passages.see(simulation);
+        let nobody = frame.agents.present().next().is_none();
+        let is_empty = nobody && !simulation.expects_agents();
+        self.levels.see(simulation, is_empty);
         if self.stills.is_empty() {
             self.stills.push(Still::of(simulation));
         }

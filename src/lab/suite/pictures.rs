@@ -5,6 +5,7 @@ use super::known::label;
 use crate::error::LabError;
 use crate::sweep::Cell;
 use engine::simulation::{Fault, Simulation};
+use output::drawing::Drawn;
 use output::picture::{Crowd, Picture};
 use output::plot::Print;
 use runs::job::Listener;
@@ -32,11 +33,13 @@ pub fn save(
         let scenario = read.map_err(|error| LabError::of(run, error))?;
         let mut simulation = Simulation::new(scenario.scene.clone()).map_err(failed)?;
         go_to(*at_secs, &mut simulation).map_err(failed)?;
-        let (crowd, title) = (Crowd::of(&simulation), format!("{name}: {run}"));
+        let drawn = Drawn::of(&scenario);
+        let crowd = Crowd::of(&simulation, drawn.drawing.as_ref());
         let picture = Picture {
+            simulation: Some(&simulation),
             body_mass: scenario.mass_on_walls(),
-            labels: &scenario.labels,
-            ..Picture::of(&simulation, &crowd, title, scenario.view.region)
+            observed: &[],
+            ..Picture::of(&drawn, &crowd, format!("{name}: {run}"))
         };
         let path = store.path(&format!("{name}.png"));
         picture.save(&path, &Print::of_program())?;

@@ -2,6 +2,7 @@
 
 use super::paths::{BORDER, LEAST_WAIT, waited};
 use super::{Coloring, Field, Frame, Picture, xy};
+use crate::drawing::Drawing;
 use crate::scenery::WALKING;
 use engine::journeys::Status;
 use engine::simulation::Simulation;
@@ -99,7 +100,8 @@ pub fn agents(picture: &Picture, faint: bool) -> Option<Mark> {
             color,
         }
     };
-    let discs: Vec<Disc> = (0..crowd.len()).map(disc).collect();
+    let shown = (0..crowd.len()).filter(|&i| picture.shows(i));
+    let discs: Vec<Disc> = shown.map(disc).collect();
     (!discs.is_empty()).then_some(Mark::Discs(discs))
 }
 
@@ -119,9 +121,16 @@ pub fn summary(picture: &Picture) -> String {
     if let Some(heading) = &picture.heading {
         return heading.clone();
     }
-    let count = picture.crowd.len();
+    let count = (0..picture.crowd.len())
+        .filter(|&i| picture.shows(i))
+        .count();
     let ending = if count == 1 { "" } else { "s" };
-    format!("{:.2} s, {count} agent{ending}", picture.crowd.time)
+    let level = picture.drawing.and_then(Drawing::only_level);
+    let on_level = level.map_or(String::new(), |name| format!(" on {name}"));
+    format!(
+        "{:.2} s, {count} agent{ending}{on_level}",
+        picture.crowd.time
+    )
 }
 
 /// An entry of the legend.

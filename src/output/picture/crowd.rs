@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
+use crate::drawing::Drawing;
 use engine::math::Vector;
 use engine::simulation::Simulation;
 
@@ -28,15 +29,19 @@ pub struct Crowd {
 }
 
 impl Crowd {
-    /// The agents that are present in the current frame of a simulation, in its order.
-    pub fn of(simulation: &Simulation) -> Self {
+    /// The agents that are present in the current frame of a simulation, in its order, where they are drawn.
+    pub fn of(simulation: &Simulation, drawing: Option<&Drawing>) -> Self {
         let frame = simulation.frame();
         let agents = frame.agents;
+        let place = |p| drawing.map_or(p, |drawing| drawing.place(p));
         let numbers = |values: &[f64]| agents.present().map(|i| values[i]).collect();
         Self {
             time: frame.clock.time(),
             id: agents.present().map(|i| i64::from(agents.id[i])).collect(),
-            position: agents.present().map(|i| agents.position[i]).collect(),
+            position: agents
+                .present()
+                .map(|i| place(agents.position[i]))
+                .collect(),
             radius: numbers(&agents.radius),
             mass: numbers(&agents.mass),
             velocity: agents.present().map(|i| Some(agents.velocity[i])).collect(),

@@ -12,6 +12,7 @@ mod scene;
 pub use crowd::{Crowd, Trails};
 pub use paths::Paths;
 
+use crate::drawing::{Drawing, Drawn};
 use crate::labels::{Labels, Placed, Screen, along_lines};
 use crate::scenery;
 use engine::math::{Vector, bounds};
@@ -72,6 +73,8 @@ pub struct Picture<'a> {
     pub paths: Vec<Paths>,
     /// The mass of an average person, kg, if walls are colored by the force on them.
     pub body_mass: Option<f64>,
+    /// How the levels of a building lie in it: its scene, people, texts and observed places are drawn so.
+    pub drawing: Option<&'a Drawing>,
 }
 
 /// The colors of people by a quantity.
@@ -132,11 +135,8 @@ impl Frame {
         }
     }
 
-    fn axes(&self) -> [Axis; 2] {
-        [
-            Axis::linear("x [m]", [self.min.x, self.max.x]),
-            Axis::linear("y [m]", [self.min.y, self.max.y]),
-        ]
+    fn ranges(&self) -> [[f64; 2]; 2] {
+        [[self.min.x, self.max.x], [self.min.y, self.max.y]]
     }
 
     /// A length in points, in meters.
@@ -150,11 +150,13 @@ impl Frame {
 }
 
 impl<'a> Picture<'a> {
-    /// A simulation in its current frame, which must be evaluated, with agents colored by their activities.
-    pub fn of(simulation: &'a Simulation, crowd: &'a Crowd, title: String, view: Region) -> Self {
+    /// People in what is drawn of a scenario, all in one color.
+    pub fn of(drawn: &'a Drawn, crowd: &'a Crowd, title: String) -> Self {
         Self {
-            simulation: Some(simulation),
-            ..Self::of_scene((simulation.scene(), crowd), title, view)
+            drawing: drawn.drawing.as_ref(),
+            observed: &drawn.observed,
+            labels: &drawn.labels,
+            ..Self::of_scene((&*drawn.scene, crowd), title, drawn.view)
         }
     }
 
@@ -175,6 +177,7 @@ impl<'a> Picture<'a> {
             labels: &[],
             paths: Vec::new(),
             body_mass: None,
+            drawing: None,
         }
     }
 
@@ -226,7 +229,7 @@ impl<'a> Picture<'a> {
     /// The sheet without marks.
     fn draft(&self, frame: &Frame, columns: usize) -> Sheet {
         let title = agents::summary(self);
-        let [x, y] = frame.axes();
+        let [x, y] = self.axes(frame);
         let bar = match self.paths.is_empty() {
             true => self.bar(),
             false => Some(paths::bar(&ColorMap::pale([0.0, 100.0], 10))),
@@ -246,9 +249,21 @@ impl<'a> Picture<'a> {
         Frame::around(shown, most, foot::height(rows))
     }
 
+    /// The axes, without numbers where levels lie beside each other.
+    fn axes(&self, frame: &Frame) -> [Axis; 2] {
+        let [across, up] = frame.ranges();
+        match self.drawing {
+            Some(drawing) if drawing.only.is_none() => [Axis::bare(across), Axis::bare(up)],
+            _ => [Axis::linear("x [m]", across), Axis::linear("y [m]", up)],
+        }
+    }
+
     /// The view, with all places and zones.
     fn shown(&self) -> [Vector; 2] {
         let Region { min, max } = self.view;
+        if self.drawing.is_some() {
+            return [min, max];
+        }
         let journeys = &self.scene.journeys;
         let places = journeys.places.iter().flat_map(scenery::lines);
         let zones = journeys.zones.iter().flat_map(|zone| zone.area.points());
@@ -272,6 +287,7 @@ impl<'a> Picture<'a> {
             }
             None => {
                 below.extend(scene::tints(scene));
+                below.extend(scene::steps(self, frame));
                 let field = self.field.as_ref();
                 below.extend(field.map(|field| Mark::Overlay(field.cells.clone())));
                 below.extend(agents::trails(self));
@@ -282,11 +298,11 @@ impl<'a> Picture<'a> {
         let mut marks = vec![Mark::Group(below)];
         marks.extend(scene::walls(scene));
         if let (None, Some(simulation), Some(mass)) = (paths, self.simulation, self.wall_mass()) {
-            marks.extend(forces::marks(simulation, mass));
+            marks.extend(forces::marks(simulation, mass, self.drawing));
         }
         marks.extend(self.lines(frame, paths.is_none(), (above, places), labels));
         marks.extend(foot::marks(self, frame, paths.is_some()));
-        let [x, y] = frame.axes();
+        let [x, y] = self.axes(frame);
         Panel {
             bar,
             ..Panel::new(&title, x, y, marks)
@@ -303,6 +319,7 @@ impl<'a> Picture<'a> {
     ) -> Vec<Mark> {
         let scene = self.scene;
         let mut marks = scene::zones(scene, frame, is_plain, &mut labels);
+        marks.extend(scene::levels(self, &mut labels));
         marks.extend(scene::sources(scene, &mut labels));
         marks.extend(above);
         marks.extend(places);
@@ -327,7 +344,8 @@ impl<'a> Picture<'a> {
         let mut labels = Labels::new(frame.screen(), self.avoided(&frame)).among_areas(self.scene);
         let places = scene::places(self, &frame, &mut labels);
         let ground = scene::ground(self.scene).into_iter();
-        let below = ground.chain(scene::tints(self.scene)).collect();
+        let tinted = ground.chain(scene::tints(self.scene));
+        let below = tinted.chain(scene::steps(self, &frame)).collect();
         let mut above = scene::walls(self.scene);
         above.extend(self.lines(&frame, true, (Vec::new(), places), labels));
         (shown, below, above)
@@ -339,6 +357,12 @@ impl<'a> Picture<'a> {
         let mut points = along_lines(self.scene, apart);
         points.extend(&self.crowd.position);
         points
+    }
+
+    /// Whether person `i` is shown: in a drawing of one level, those on others are not.
+    fn shows(&self, i: usize) -> bool {
+        let only = self.drawing.filter(|drawing| drawing.only.is_some());
+        only.is_none_or(|drawing| drawing.shown.contains(self.crowd.position[i]))
     }
 
     /// The mass of an average person, kg, if walls are colored: there is one color bar only.

@@ -1,6 +1,7 @@
 //! The marks of a scene: ground, walls, places, zones, sources and goals.
 
-use super::{Frame, Picture, dark, xy};
+use super::{Frame, NAME, Picture, dark, xy};
+use crate::drawing;
 use crate::labels::{self, AROUND, Labels, around, of_place};
 use crate::scenery::{self, ZONE};
 use engine::agents::Agents;
@@ -16,6 +17,8 @@ const SOLID: Rgb = [176, 176, 172];
 const WALL: Rgb = [52, 54, 60];
 const GOAL: Rgb = [213, 94, 0];
 const SOURCE: Rgb = [0, 150, 180];
+const STEP: Rgb = [206, 206, 200];
+const JOIN: Rgb = [110, 90, 160];
 const CLOSED: Rgb = [190, 40, 40];
 /// Far enough to cover the panel, meters.
 const FAR: f64 = 1e7;
@@ -86,11 +89,41 @@ pub fn zones(scene: &Scene, frame: &Frame, inside: bool, labels: &mut Labels) ->
         let style = |width| Style::full(light(ZONE, 0.7), width, "");
         let outline = scenery::closed(zone.area.points()).into_iter().map(xy);
         marks.push(Mark::line(outline, style(0.8)));
-        let hatching = scenery::hatching(&zone.area, frame.meters(7.0));
+        let hatching = scenery::hatching(&zone.area, scenery::across_zones(), frame.meters(7.0));
         let lines = hatching.into_iter().map(|line| line.map(xy));
         marks.extend(lines.map(|line| Mark::line(line, style(0.4))));
         let name = scenery::named("zone", &scenery::zone_name(zone));
         labels.add(&name, ZONE, &around(zone.area.points(), inside));
+    }
+    marks
+}
+
+/// The steps of stairs.
+pub fn steps(picture: &Picture, frame: &Frame) -> Vec<Mark> {
+    let drawing = picture.drawing.iter();
+    let steps = drawing.flat_map(|drawing| drawing.steps(frame.meters(3.0)));
+    let style = Style::full(STEP, 0.5, "");
+    steps
+        .map(|line| Mark::line(line.map(xy), style.clone()))
+        .collect()
+}
+
+/// The names of levels, and their joins with the names of those to which they lead.
+pub fn levels(picture: &Picture, labels: &mut Labels) -> Vec<Mark> {
+    let Some(drawing) = picture.drawing else {
+        return Vec::new();
+    };
+    for (name, [top, bottom]) in drawing.names() {
+        labels.add(name, NAME, &[(top, [0, 1]), (bottom, [0, -1])]);
+    }
+    let mut marks = Vec::new();
+    let joins = drawing.joins();
+    for way in &joins {
+        let line = way.line.map(xy);
+        marks.push(Mark::line(line, Style::full(FLOOR, 1.8, "")));
+        marks.push(Mark::line(line, Style::broken(JOIN, 1.8, "")));
+        let name = format!("to {}", way.to);
+        labels.add_of(joins.len(), &name, (JOIN, &around(&way.line, false)));
     }
     marks
 }
@@ -163,7 +196,10 @@ fn initial(scene: &Scene) -> Agents {
 pub fn goals(picture: &Picture, frame: &Frame, names: &mut Labels) -> Vec<Mark> {
     let scene = picture.scene;
     let goals = match picture.simulation {
-        Some(simulation) => scenery::goals(scene, simulation.frame().agents),
+        Some(simulation) => {
+            let goals = scenery::goals(simulation.scene(), simulation.frame().agents);
+            drawing::goals(goals, picture.drawing)
+        }
         None => scenery::goals(scene, &initial(scene)),
     };
     for (name, spots) in labels::of_goals(scene, &goals) {

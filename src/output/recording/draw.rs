@@ -8,6 +8,7 @@ use rerun::{
 
 use super::error::Cause;
 use analysis::way_field::Grid;
+use engine::levels::Level;
 use engine::math::Vector;
 use figures::colors::Rgb;
 
@@ -22,6 +23,14 @@ pub type Class = (u8, String, Rgba32);
 
 pub fn xy(v: Vector) -> Point {
     [v.x as f32, v.y as f32]
+}
+
+/// A place in a building, meters.
+pub type Place = [f32; 3];
+
+/// A place on a level of a building.
+pub fn xyz(level: &Level, p: Vector) -> Place {
+    [p.x, p.y, level.height(p)].map(|x| x as f32)
 }
 
 pub fn color([r, g, b]: Rgb) -> Color {

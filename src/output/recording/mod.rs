@@ -16,6 +16,7 @@
 //! | `world/waits` | openings colored by the time that the last agent bound for them waits, if routes are chosen by time |
 //! | `world/leans` | lines from the legs of people to their bodies, colored by the lean, if a profile has legs |
 //! | `world/routes/…` | the lengths of the routes to each place and goal as an image, hidden at first |
+//! | `building/LEVEL/…` | of a building: the levels at their heights in three dimensions, and the people on them |
 //! | `world/agents` | the crowd: positions, radii, density and speed colors, `agent:…` values |
 //! | `world/debug/…` | the debug agents: kernels, hidden regions, wall points, forces, routes |
 //! | `focus/ID/…` | a followed agent in its own frame, with its forces as arrows and as time series |
@@ -29,6 +30,7 @@
 //! arranges the views, and `stream` sends everything to a file or a viewer.
 
 mod arrangement;
+mod building;
 mod debug;
 mod draw;
 mod error;
@@ -54,15 +56,18 @@ pub use stream::{Destination, check_enabled};
 
 use rerun::RecordingStream;
 
+use crate::drawing::{self, Drawing};
 use crate::events::{Events, Line};
 use crate::scenery;
 use analysis::wall_forces::Outlines;
+use building::Building;
 use debug::focus::Focus;
 use debug::follow::{Follow, Moment};
 use debug::{arrows, layers, moment};
 use engine::clock::Clock;
 use engine::simulation::Simulation;
 use frame::colored_lines::{self, ColoredLines, LEANS, WAITS, WALL_FORCES};
+use frame::crowd::Maps;
 use frame::{Snapshot, stats};
 use layout::{Content, Kind};
 use scene::{obstacles, routes};
@@ -80,6 +85,8 @@ pub struct Recorder {
     /// Cells of the walls, if they are colored by force.
     outlines: Option<Outlines>,
     events: Events,
+    /// How the levels of a building lie.
+    drawing: Option<Drawing>,
 }
 
 impl Recorder {
@@ -105,16 +112,18 @@ impl Recorder {
         let follow = Follow::new(&options.debug);
         let names = follow.names();
         let scene = simulation.scene();
+        let drawing = Drawing::of(scene);
+        let drawn = drawing::drawn(scene, drawing.as_ref());
         let layers: [(&'static ColoredLines, bool); 3] = [
             (&WAITS, scene.by_time() && scene.rooms().is_some()),
             (&WALL_FORCES, options.body_mass.is_some()),
             (&LEANS, colored_lines::have_legs(simulation)),
         ];
-        let drawn = layers.into_iter().filter(|(_, has)| *has);
-        let lines: Vec<_> = drawn.map(|(layer, _)| layer).collect();
+        let shown = layers.into_iter().filter(|(_, has)| *has);
+        let lines: Vec<_> = shown.map(|(layer, _)| layer).collect();
         let log_own = |stream: &RecordingStream| {
             let document = text::of_run(stream, scene, options)?;
-            scene::log(stream, simulation, options)?;
+            scene::log(stream, simulation, (&drawn, drawing.as_ref()), options)?;
             stats::log_places(stream, scene)?;
             for layer in &lines {
                 layer.log_style(stream)?;
@@ -125,6 +134,11 @@ impl Recorder {
             let debug = Debug {
                 layers: layers::begin(stream, scene, &options.debug)?,
                 focuses: focuses.collect::<Result<_, _>>()?,
+                building: scene
+                    .levels
+                    .clone()
+                    .map(|levels| Building::begin(stream, levels, Maps::new(options)))
+                    .transpose()?,
             };
             Ok((document, debug))
         };
@@ -132,7 +146,8 @@ impl Recorder {
             has_journeys: !scene.journeys.places.is_empty(),
             has_stages: scenery::has_stages(scene),
             has_waiting: stats::has_waiting(scene),
-            fields: routes::entities(scene),
+            fields: routes::entities(&drawn),
+            has_levels: drawing.is_some(),
             lines: lines.clone(),
             followed: names.clone(),
             ..Content::new(kind, obstacles::has_outside(scene.walls.obstacles()))
@@ -143,6 +158,7 @@ impl Recorder {
             moment: Moment::new(options.opens_at),
             outlines: (options.body_mass).map(|_| Outlines::new(&scene.walls)),
             events: Events::new(options.entering),
+            drawing,
         })
     }
 
@@ -167,10 +183,12 @@ impl Recorder {
         let time = simulation.frame().clock.time();
         let opens_here = self.moment.is_asked(time);
         self.follow.update(simulation, &options.debug, opens_here);
-        let mut snapshot = Snapshot::of(simulation, &options.debug, &self.follow.ids());
+        let shown = (&options.debug, &self.follow.ids()[..]);
+        let mut snapshot = Snapshot::of(simulation, shown, self.drawing.as_ref());
         snapshot.ms_per_frame = Some(ms_per_frame);
         if let (Some(outlines), Some(mass)) = (&self.outlines, options.body_mass) {
-            let parts = colored_lines::wall_forces(outlines, simulation, mass);
+            let drawing = self.drawing.as_ref();
+            let parts = colored_lines::wall_forces(outlines, (simulation, mass), drawing);
             snapshot.lines.push((&WALL_FORCES, parts));
         }
         snapshot.events = self.events.new_lines(simulation);

@@ -6,6 +6,7 @@ use std::thread::JoinHandle;
 
 use rerun::RecordingStream;
 
+use super::building::Building;
 use super::debug::focus::Focus;
 use super::debug::layers::Layer;
 use super::error::{Cause, GONE, RecordingError};
@@ -22,13 +23,15 @@ use crate::events::Line;
 /// Maximum number of queued snapshots; the simulation waits when the queue is full.
 const QUEUE: usize = 4;
 
-/// The layers that show the debug agents.
+/// What shows the debug agents, and the levels of a building.
 #[derive(Default)]
 pub struct Debug {
     /// The layers with all of them.
     pub layers: Vec<Layer>,
     /// The followed ones.
     pub focuses: Vec<Focus>,
+    /// The building in three dimensions.
+    pub building: Option<Building>,
 }
 
 /// The items that the thread writes.
@@ -166,6 +169,9 @@ fn write_all(
         events::log(stream, &snapshot.events)?;
         set_time(stream, snapshot.frame, snapshot.time);
         crowd.log(stream, &snapshot)?;
+        if let Some(building) = &mut debug.building {
+            building.log(stream, &snapshot)?;
+        }
         for (layer, parts) in &snapshot.lines {
             layer.log(stream, parts)?;
         }

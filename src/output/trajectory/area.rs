@@ -5,15 +5,17 @@
 //! several such parts, the text is a `MULTIPOLYGON`; PedPy takes a single polygon, so its user must choose one.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use super::Row;
 use super::error::Cause;
-use engine::geometry::AreaIndex;
+use engine::geometry::{Area, AreaIndex};
+use engine::levels::Levels;
 use engine::math::{Vector, bounds};
 use engine::period::Period;
 use engine::scene::{Goal, Region};
 use engine::simulation::Simulation;
-use scenario::floor_plan::{Rings, free, outlines, to_wkt};
+use scenario::floor_plan::{Rings, free, outlines, rings, to_wkt};
 
 /// Margin around everything, meters.
 const MARGIN: f64 = 5.0;
@@ -29,6 +31,8 @@ pub struct WalkableArea {
     entries: Vec<Vector>,
     /// The area ends where the period does.
     period: Option<Period>,
+    /// That of a building has the floors of all levels, seen from above.
+    levels: Option<Arc<Levels>>,
 }
 
 impl WalkableArea {
@@ -67,14 +71,18 @@ impl WalkableArea {
             obstacles,
             entries,
             period: scene.period,
+            levels: scene.levels.clone(),
         }
     }
 
     /// Extends the rectangle to include all agents. Returns whether it grew.
     pub fn reach(&mut self, rows: &[Row<'_>]) -> bool {
         let mut grown = false;
+        if self.levels.is_some() {
+            return grown;
+        }
         for row in rows {
-            let place = row.position();
+            let place = row.place();
             let [low, high] = self.bounds;
             if (place - low).min() <= 0.0 || (high - place).min() <= 0.0 {
                 let margin = Vector::new(MARGIN, MARGIN);
@@ -90,6 +98,16 @@ impl WalkableArea {
     /// # Errors
     /// As [`free`].
     pub fn cut_out(&self) -> Result<(String, [f64; 4]), Cause> {
+        let described = |areas: &[Area], otherwise| {
+            let corners = areas.iter().flat_map(|area| area.exterior.points());
+            let [min, max] = bounds(corners.copied()).unwrap_or(otherwise);
+            (to_wkt(areas), [min.x, min.y, max.x, max.y])
+        };
+        if let Some(levels) = &self.levels {
+            let floors = levels.all().iter().flat_map(|level| &level.floor);
+            let areas = free(&[rings(floors)], &Rings::new())?;
+            return Ok(described(&areas, self.bounds));
+        }
         let clipped = |period: Period| period.clipped(self.bounds);
         let [min, max] = self.period.map_or(self.bounds, clipped);
         let mut floors = self.floors.clone();
@@ -107,9 +125,7 @@ impl WalkableArea {
                 .map(|(_, area)| area)
                 .collect();
         }
-        let corners = areas.iter().flat_map(|area| area.exterior.points());
-        let [min, max] = bounds(corners.copied()).unwrap_or(self.bounds);
-        Ok((to_wkt(&areas), [min.x, min.y, max.x, max.y]))
+        Ok(described(&areas, self.bounds))
     }
 }
 

@@ -14,9 +14,6 @@ pub enum TrajectoryError {
         .0.display()
     )]
     UnknownFormat(PathBuf),
-    /// The format has no levels.
-    #[error("{}: the trajectories of a building are written as .csv only, which has levels", .0.display())]
-    Building(PathBuf),
     /// The frame rate does not divide the simulation's frame rate.
     #[error(
         "{fps} frames per second do not divide the simulation's {}; the nearest that do are {}",

@@ -24,10 +24,13 @@ pub struct Lines {
 impl Lines {
     /// The text format of the Pedestrian Dynamics Data Archive. Readers take the first number after `framerate`, and
     /// the unit from `x/m`.
-    pub fn text(mut file: File, fps: f64) -> io::Result<Self> {
+    ///
+    /// The lines of a building end with the height and the level, in whose name blanks are underscores.
+    pub fn text(mut file: File, fps: f64, has_levels: bool) -> io::Result<Self> {
         let two_decimals = Some(format!("{fps:.2}")).filter(|text| text.parse() == Ok(fps));
         let fps = two_decimals.unwrap_or_else(|| fps.to_string());
-        let head = format!("# framerate: {fps}\n# id frame x/m y/m z/m\n");
+        let level = if has_levels { " level" } else { "" };
+        let head = format!("# framerate: {fps}\n# id frame x/m y/m z/m{level}\n");
         file.write_all(head.as_bytes())?;
         Ok(Self {
             file,
@@ -70,8 +73,13 @@ fn text(rows: &[Row<'_>], _: bool) -> Result<Vec<u8>, Cause> {
     let parts = rows.par_chunks(SOME).map(|rows| {
         let mut lines = Vec::new();
         for row in rows {
-            let (id, frame, at) = (row.id(), row.number, row.position());
-            writeln!(lines, "{id}\t{frame}\t{}\t{}\t0", at.x, at.y)?;
+            let (id, frame, at, z) = (row.id(), row.number, row.place(), row.height());
+            write!(lines, "{id}\t{frame}\t{}\t{}\t{z}", at.x, at.y)?;
+            if let Some(level) = row.level() {
+                let words: Vec<&str> = level.split_whitespace().collect();
+                write!(lines, "\t{}", words.join("_"))?;
+            }
+            writeln!(lines)?;
         }
         Ok(lines)
     });

@@ -6,6 +6,8 @@
 //! | `.txt` | PedPy, the Pedestrian Dynamics Data Archive's tools | positions, in text |
 //! | `.csv` | everything | every quantity of every agent: [`COLUMNS`], and what forces keep |
 //!
+//! Positions in a building are those there, with the level and the height of each agent.
+//!
 //! Frames are numbered 0, 1, 2, … at the file's own rate. Numbers are the values of the evaluated frame, with all
 //! digits. An interrupted run leaves whole frames: a text file has each frame as soon as it is logged, a SQLite file
 //! all but those of the last second (a `-journal` file beside it belongs to it, and disappears when the file is
@@ -116,9 +118,7 @@ impl Trajectory {
         fps: f64,
     ) -> Result<Self, TrajectoryError> {
         let format = Format::of(path)?;
-        if format != Format::Csv && simulation.scene().levels.is_some() {
-            return Err(TrajectoryError::Building(path.to_owned()));
-        }
+        let levels = simulation.scene().levels.clone();
         let clock = *simulation.frame().clock;
         let every = frames_between(&clock, fps)?;
         let fps = 1.0 / clock.time_at(every);
@@ -127,9 +127,9 @@ impl Trajectory {
             Ok(match format {
                 Format::Sqlite => {
                     let area = WalkableArea::new(simulation, view);
-                    Box::new(Sqlite::create(path, area, fps)?)
+                    Box::new(Sqlite::create(path, area, fps, levels.as_deref())?)
                 }
-                Format::Text => Box::new(Lines::text(file, fps)?),
+                Format::Text => Box::new(Lines::text(file, fps, levels.is_some())?),
                 Format::Csv => Box::new(Lines::csv(file)),
             })
         };

@@ -50,8 +50,8 @@ pub const COLUMNS: [(&str, &str, Value); 27] = [
     ("id", "the agent, from 0 in the order of entry", Count(|row| row.id().into())),
     ("group", "name of the agent's group", Name(|row| Some(&row.group().name))),
     ("push", "name of the push that the agent takes part in", Name(|row| row.push())),
-    ("pos_x", "position, m", Number(|row| row.in_building(row.position()).x)),
-    ("pos_y", "position, m", Number(|row| row.in_building(row.position()).y)),
+    ("pos_x", "position, m", Number(|row| row.place().x)),
+    ("pos_y", "position, m", Number(|row| row.place().y)),
     ("vel_x", "velocity, m/s", Number(|row| row.velocity().x)),
     ("vel_y", "velocity, m/s", Number(|row| row.velocity().y)),
     ("speed", "speed, m/s", Number(|row| row.speed())),
@@ -103,9 +103,14 @@ impl<'a> Row<'a> {
         Some(&self.scene.pushes[usize::from(push)].name)
     }
 
-    /// r_i, meters.
-    pub fn position(&self) -> Vector {
+    /// r_i in the plane of the engine, meters.
+    fn position(&self) -> Vector {
         self.agents.position[self.i]
+    }
+
+    /// r_i, in a building at its place there, meters.
+    pub fn place(&self) -> Vector {
+        self.in_building(self.position())
     }
 
     /// A place of the plane in the building, meters: on one level, the place itself.
@@ -114,12 +119,14 @@ impl<'a> Row<'a> {
         levels.map_or(place, |levels| levels.in_building(place))
     }
 
-    fn level(&self) -> Option<&'a str> {
+    /// The name of the level of a building on which the agent is.
+    pub fn level(&self) -> Option<&'a str> {
         let levels = self.scene.levels.as_ref()?;
         Some(&levels.all()[levels.level(self.position())].name)
     }
 
-    fn height(&self) -> f64 {
+    /// The height of the floor at the agent, meters.
+    pub fn height(&self) -> f64 {
         let levels = self.scene.levels.as_ref();
         levels.map_or(0.0, |levels| levels.height(self.position()))
     }

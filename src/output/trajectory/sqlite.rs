@@ -9,7 +9,9 @@ use rusqlite::{Connection, ToSql, params, params_from_iter};
 use super::area::WalkableArea;
 use super::error::Cause;
 use super::{Row, Sink};
+use engine::levels::Levels;
 use runs::outputs::followed;
+use scenario::floor_plan::to_wkt;
 
 /// An interrupted run loses at most this much, plus one frame.
 const COMMIT_EVERY: Duration = Duration::from_secs(1);
@@ -33,6 +35,12 @@ const TABLES: &str = "
     CREATE UNIQUE INDEX geometry_hash ON geometry(hash);
     CREATE TABLE frame_data (frame INTEGER NOT NULL, geometry_hash INTEGER NOT NULL);";
 
+/// What a building has in addition: the level and the height of each agent, and the walkable area of each level.
+const OF_LEVELS: &str = "
+    ALTER TABLE trajectory_data ADD COLUMN level TEXT;
+    ALTER TABLE trajectory_data ADD COLUMN z REAL;
+    CREATE TABLE levels (name TEXT NOT NULL UNIQUE PRIMARY KEY, wkt TEXT NOT NULL);";
+
 /// Hash of the only geometry, used by all frames.
 const GEOMETRY: i64 = 1;
 
@@ -48,7 +56,12 @@ pub struct Sqlite {
 
 impl Sqlite {
     /// Creates the tables in an empty file.
-    pub fn create(path: &Path, area: WalkableArea, fps: f64) -> Result<Self, Cause> {
+    pub fn create(
+        path: &Path,
+        area: WalkableArea,
+        fps: f64,
+        levels: Option<&Levels>,
+    ) -> Result<Self, Cause> {
         forget_journal(path)?;
         // A relative name that begins with `file:` would be taken for a URI.
         let connection = Connection::open(fs::canonicalize(path)?)?;
@@ -64,6 +77,14 @@ impl Sqlite {
         sqlite.set("version", "2")?;
         sqlite.set("fps", &format!("{fps:?}"))?;
         sqlite.write_area()?;
+        if let Some(levels) = levels {
+            sqlite.connection.execute_batch(OF_LEVELS)?;
+            for level in levels.all() {
+                let insert = "INSERT INTO levels VALUES (?, ?)";
+                let values = params![level.name, to_wkt(&level.floor)];
+                sqlite.connection.execute(insert, values)?;
+            }
+        }
         sqlite.connection.execute_batch("COMMIT")?;
         Ok(sqlite)
     }
@@ -84,16 +105,26 @@ impl Sqlite {
     }
 
     fn insert(&self, frame: u64, rows: &[Row<'_>]) -> rusqlite::Result<()> {
-        let into_rows = "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
-        let mut insert = self.connection.prepare(into_rows)?;
+        let of_level = match rows.first().and_then(Row::level) {
+            Some(_) => ", ?, ?",
+            None => "",
+        };
+        let into_rows =
+            format!("INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?{of_level})");
+        let mut insert = self.connection.prepare(&into_rows)?;
         let frame = frame.cast_signed();
         for row in rows {
-            let (at, facing) = (row.position(), row.orientation());
+            let (at, facing) = (row.place(), row.orientation());
             let place = [at.x, at.y, facing.x, facing.y];
             let values = [row.density(), row.pressure(), row.speed(), row.mass()];
             let ids: [&dyn ToSql; 2] = [&frame, &row.id()];
             let numbers = place.iter().chain(&values).map(|x| x as &dyn ToSql);
-            insert.execute(params_from_iter(ids.into_iter().chain(numbers)))?;
+            let (level, height) = (row.level(), row.height());
+            let of_level = level
+                .iter()
+                .flat_map(|level| [level as &dyn ToSql, &height as &dyn ToSql]);
+            let all = ids.into_iter().chain(numbers).chain(of_level);
+            insert.execute(params_from_iter(all))?;
         }
         let insert = "INSERT INTO frame_data VALUES (?, ?)";
         self.connection.execute(insert, params![frame, GEOMETRY])?;

@@ -28,7 +28,7 @@ use crate::keys::periodic::Periodic;
 use crate::keys::places::{Door, Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use crate::keys::preset::Preset;
 use crate::keys::profiles::ProfileChoice;
-use crate::keys::shapes::{Corners, Label, Outline, Point, Ring};
+use crate::keys::shapes::{Corners, Label, Outline, Point, Ring, obstacles, walkable_area};
 use crate::measurements::Measurement;
 use engine::boundary::WallMethod;
 use engine::clock::PAPER_TIME_STEP;
@@ -280,28 +280,4 @@ fn sources(generator: &mut SchemaGenerator) -> Schema {
         required.push("every_secs".into());
     }
     json_schema!({"type": "array", "items": source})
-}
-
-fn walkable_area(generator: &mut SchemaGenerator) -> Schema {
-    let polygon = json_schema!({
-        "description": "Rings: the outline, then the holes.",
-        "type": "array", "items": generator.subschema_for::<Ring>(), "minItems": 1,
-    });
-    json_schema!({"anyOf": [floor_plan(), {"type": "array", "items": polygon, "minItems": 1}, {"type": "null"}]})
-}
-
-fn obstacles(generator: &mut SchemaGenerator) -> Schema {
-    let corners = json_schema!({
-        "description": "A ring: its corners in order, in either orientation; two points are a wall.",
-        "type": "array", "items": generator.subschema_for::<Point>(), "minItems": 2,
-    });
-    let rings =
-        json_schema!({"type": "array", "items": generator.subschema_for::<Ring>(), "minItems": 1});
-    let obstacle = json_schema!({"description": "A polygon: its corners, or its rings", "anyOf": [corners, rings]});
-    json_schema!({"anyOf": [floor_plan(), {"type": "array", "items": obstacle}]})
-}
-
-fn floor_plan() -> Value {
-    let description = "A DXF, GeoJSON, WKT or JuPedSim XML file, relative to this file's folder.";
-    json!({"type": "string", "description": description})
 }

@@ -4,11 +4,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::keys::names::{optional_word, word};
-use crate::keys::shapes::{Outline, Point, Ring};
+use crate::keys::shapes::{Outline, Point, Ring, floor_area, obstacles};
 
 /// The lists whose elements lie on a level.
-pub const ON_LEVELS: [&str; 13] = [
+pub const ON_LEVELS: [&str; 14] = [
     "exits",
+    "doors",
     "waypoints",
     "waiting_areas",
     "queues",
@@ -60,11 +61,12 @@ pub struct Level {
     #[schemars(range(min = -10000, max = 10000))]
     pub elevation: Option<f64>,
     /// Where agents can walk, corners in the building's meters: a list of polygons, each a list of rings (the outline,
-    /// then the holes).
-    #[schemars(length(min = 1), inner(length(min = 1)))]
+    /// then the holes), or the name of a floor plan file with this level.
+    #[schemars(schema_with = "floor_area")]
     pub walkable_area: Vec<Vec<Ring>>,
     /// Solid bodies on it, as in the scenario's `obstacles`.
     #[serde(default)]
+    #[schemars(schema_with = "obstacles")]
     pub obstacles: Vec<Outline>,
     /// Of stairs and ramps: `weidmann`, 0.610 m/s up and 0.694 m/s down, seen from above, for those who want 1.34 m/s
     /// (Weidmann 1993), or `same`, along the slope as fast as on a floor. Default: `weidmann` for stairs, `same` for

@@ -1,9 +1,9 @@
 //! Points and polygons in a file.
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 use serde_untagged::UntaggedEnumVisitor;
 
 use crate::error::Problem;
@@ -130,4 +130,35 @@ pub fn wide_region(key: &str, corners: Corners) -> Result<Region, Problem> {
         0.0 => Err(Problem::new(key, "has no area")),
         _ => Ok(found),
     }
+}
+
+/// Polygons to walk on, or the file that has them, or null.
+pub fn walkable_area(generator: &mut SchemaGenerator) -> Schema {
+    json_schema!({"anyOf": [floor_area(generator), {"type": "null"}]})
+}
+
+/// Polygons to walk on, or the file that has them.
+pub fn floor_area(generator: &mut SchemaGenerator) -> Schema {
+    let polygon = json_schema!({
+        "description": "Rings: the outline, then the holes.",
+        "type": "array", "items": generator.subschema_for::<Ring>(), "minItems": 1,
+    });
+    json_schema!({"anyOf": [floor_plan(), {"type": "array", "items": polygon, "minItems": 1}]})
+}
+
+/// Solid bodies, or the file that has them.
+pub fn obstacles(generator: &mut SchemaGenerator) -> Schema {
+    let corners = json_schema!({
+        "description": "A ring: its corners in order, in either orientation; two points are a wall.",
+        "type": "array", "items": generator.subschema_for::<Point>(), "minItems": 2,
+    });
+    let rings =
+        json_schema!({"type": "array", "items": generator.subschema_for::<Ring>(), "minItems": 1});
+    let obstacle = json_schema!({"description": "A polygon: its corners, or its rings", "anyOf": [corners, rings]});
+    json_schema!({"anyOf": [floor_plan(), {"type": "array", "items": obstacle}]})
+}
+
+fn floor_plan() -> Value {
+    let description = "A DXF, GeoJSON, WKT or JuPedSim XML file, relative to this file's folder.";
+    json!({"type": "string", "description": description})
 }

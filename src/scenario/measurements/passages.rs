@@ -9,9 +9,6 @@ use engine::routes::{Destination, MapKey, Narrowings, Routes, WIDEST};
 use engine::scene::Scene;
 use engine::simulation::Simulation;
 
-/// A way through an opening goes on this far behind it, meters.
-const BEYOND: f64 = 1e-3;
-
 /// An opening of the floor, with its distance along a way, meters.
 pub(super) type Crossing = (u32, f64);
 
@@ -169,11 +166,16 @@ fn course(simulation: &Simulation, routes: &Routes, (i, to): (usize, Destination
         }
         let rooms = routes.rooms()?;
         let here = plan.located.triangle_at(rooms, p)?;
-        let mut course = rooms.course((p, here), usize::from(plan.goal), Some(side));
-        let behind = course.last()? + rooms.ahead(side) * BEYOND;
-        course.push(behind);
-        course.extend(routes.course(behind, to));
-        Some(course)
+        // Points of the building, then as seen from `p`.
+        let floor = &rooms.floor;
+        let at = floor.in_building(p);
+        let mut course = rooms.course((at, here), usize::from(plan.goal), Some(side));
+        let behind = rooms.beyond(side, *course.last()?);
+        let shift = floor.in_building(behind) - behind;
+        course.push(behind + shift);
+        let rest = routes.course(behind, to).into_iter();
+        course.extend(rest.map(|point| point + shift));
+        Some(course.into_iter().map(|point| point + (p - at)).collect())
     });
     through.unwrap_or_else(|| routes.course(p, to))
 }

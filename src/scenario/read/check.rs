@@ -18,6 +18,7 @@ use crate::read::parsed::parsed;
 use crate::read::plans::Plans;
 use crate::read::scenario::Scenario;
 use crate::read::{curves, data, late, levels, plans, preset};
+use crate::scene::levels::check_reach;
 use crate::scene::need::Need;
 use crate::scene::origin::Items;
 use crate::scene::people::Population;
@@ -130,11 +131,8 @@ impl Draft {
         periodic::check_keys(keys)?;
         let Surroundings { solids, mut behind } = Surroundings::of(keys)?;
         let building = self.building.as_ref();
-        behind.extend(
-            building
-                .into_iter()
-                .flat_map(|building| building.seen.clone()),
-        );
+        let seen = building.into_iter().flat_map(|one| one.seen.clone());
+        behind.extend(seen);
         let without_effect = surroundings::without_effect(keys);
         let default = ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned()));
         let choice = keys.profile.as_ref().unwrap_or(&default);
@@ -147,6 +145,7 @@ impl Draft {
         let items = populated.map_err(|problem| likely_cause(problem, &without_effect))?;
         scene.integrator = keys.integrator.for_scene(&scene);
         scene.clock = numerics::clock_for(keys, &scene)?;
+        check_reach(&scene)?;
         scene.interventions = interventions::read(&keys.interventions, &scene)?;
         let passage_width = widest::passable(&items.origins(keys, &scene));
         interventions::add_routes(&mut scene, passage_width)?;

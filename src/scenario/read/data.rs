@@ -66,6 +66,7 @@ pub fn tracks(path: &Path, given: &FromData) -> Result<(Tracks, f64), Problem> {
     let options = ReadOptions {
         unit: given.unit,
         fps: given.fps,
+        ..ReadOptions::default()
     };
     let tracks = read(path, &options)
         .map_err(|error| Problem::new("trajectory", shown_message(&in_keys(&error.to_string()))))?;

@@ -125,14 +125,9 @@ impl Draft {
         let inputs = std::mem::take(&mut self.inputs);
         let is_web_app = self.is_web_app;
         let translated = is_web_app.then(|| self.document.clone());
-        let levels = self
-            .building
-            .as_ref()
-            .map(|building| building.levels.clone());
-        let in_building = |text: &str| match &levels {
-            Some(levels) => levels::in_building(levels, text),
-            None => text.to_owned(),
-        };
+        let building = self.building.as_ref();
+        let levels = building.map(|building| building.levels.clone());
+        let in_building = |text: &str| levels::in_building(levels.as_deref(), text);
         let ends = self.ends(inputs.without.as_ref());
         let late = self.late(ends);
         let built = self.built(Path::new(&inputs.file), ends[1]);

@@ -8,6 +8,7 @@ use crate::error::quote::shown;
 use engine::agents::NewAgent;
 use engine::entrance::Entrance;
 use engine::journeys::{Kind, Place};
+use engine::math::Vector;
 use engine::random::Purpose;
 use engine::scene::Scene;
 
@@ -145,17 +146,26 @@ pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
     let is_all = scene.sources.is_empty() && scene.entrances.is_empty() && last > 0.0;
     let needs = |agent: &NewAgent| {
         let group = &scene.groups[usize::from(agent.group)];
+        let distance_of = |to: Vector, nearest: &dyn Fn(Vector) -> Vector| {
+            let levels = scene.levels.as_ref();
+            let from = levels.map_or(agent.position, |levels| {
+                levels.on_level_of(to, agent.position)
+            });
+            (nearest(from) - from).norm()
+        };
         let distance = match group.journey {
             Some(journey) => {
                 let stages = &scene.journeys.journeys[usize::from(journey)].stages;
                 let numbers = stages.iter().flat_map(|stage| &stage.places);
                 let places = numbers.map(|&place| &scene.journeys.places[usize::from(place)]);
                 let exits = places.filter(|place| place.is_exit());
-                let distances =
-                    exits.map(|exit| (exit.nearest_point(agent.position) - agent.position).norm());
+                let distances = exits.filter_map(|exit| {
+                    let [end, _] = exit.line()?;
+                    Some(distance_of(end, &|p| exit.nearest_point(p)))
+                });
                 distances.reduce(f64::min)?
             }
-            None => (agent.goal - agent.position).norm() - group.removal_radius?,
+            None => distance_of(agent.goal, &|_| agent.goal) - group.removal_radius?,
         };
         let speeds = group.traits.preferred_speed.as_ref();
         let drawn = speeds.map(|speed| speed.quantile(FASTEST));

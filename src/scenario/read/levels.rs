@@ -13,7 +13,8 @@ use crate::scene::levels::Building;
 use crate::scene::surroundings::{OBSTACLES, WALKABLE_AREA};
 use engine::geometry::Area;
 use engine::levels::Levels;
-use engine::math::{Vector, bounds, direction, perpendicular, sides};
+use engine::math::{Vector, direction, perpendicular, sides};
+use engine::routes::nearest_on;
 
 /// The keys of a building.
 const LEVELS: &str = "levels";
@@ -25,13 +26,9 @@ const GEOMETRY: [&str; 10] = [
     "line", "area", "path", "at", "facing", "position", "goal", "min", "max", "region",
 ];
 /// The keys that a building has not, and why.
-const REFUSED: [(&str, &str); 8] = [
+const REFUSED: [(&str, &str); 6] = [
     (WALKABLE_AREA, "the levels have their own"),
     (OBSTACLES, "the levels have their own"),
-    (
-        "plan",
-        "floor plan files have one level; write the levels out",
-    ),
     ("periodic", "a building does not repeat itself"),
     (
         "goal",
@@ -39,16 +36,12 @@ const REFUSED: [(&str, &str); 8] = [
     ),
     ("from", "trajectories on several levels cannot be the start"),
     (
-        "doors",
-        "doors in buildings are not known yet; leave gaps in the walls",
-    ),
-    (
         "interventions",
         "interventions in buildings are not known yet",
     ),
 ];
 
-/// People see this far onto the next level, meters.
+/// The floor of the next level goes on this far behind a join, meters.
 const REACH: f64 = 10.0;
 /// The floor of the next level must go on at least this far behind a join, meters.
 const LEAST_REACH: f64 = 0.6;
@@ -56,8 +49,9 @@ const LEAST_REACH: f64 = 0.6;
 const THICKNESS: f64 = 0.01;
 /// Edges this near to each other are the same, meters.
 const SAME: f64 = 1e-6;
-/// Names of levels stand this far above them, meters.
-const ABOVE: f64 = 1.0;
+/// A door this near to a join lies on it, and an exit is at it, meters.
+const ON_JOIN: f64 = 0.05;
+const AT_JOIN: f64 = 0.015;
 
 /// A building, side by side.
 #[derive(Debug, Clone)]
@@ -92,20 +86,75 @@ pub fn side_by_side(document: &Value) -> Result<Option<SideBySide>, Problem> {
     let levels: Vec<Level> = parsed(levels).map_err(under(LEVELS))?;
     let joins: Option<Vec<Join>> = joins.map(parsed).transpose().map_err(under(JOINS))?;
     let building = Building::new(&levels, &joins.unwrap_or_default())?;
+    check_lines(document, &building)?;
     let mut plane = document.clone();
     place(&mut plane, &building)?;
     let mut found = Laid::default();
-    for number in 0..building.floors.len() {
+    for number in 0..building.levels.all().len() {
         found.lay(&building, number)?;
     }
     plane[WALKABLE_AREA] = found.floors.into();
     plane[OBSTACLES] = found.walls.into();
-    name_levels(&mut plane, &building);
     Ok(Some(SideBySide {
         document: plane,
         levels: Arc::new(building.levels),
         seen: found.seen,
     }))
+}
+
+/// Refuses doors on joins, which those who come from the other level would not meet, and exits and entrances at joins,
+/// whose floors behind would lead around them.
+fn check_lines(document: &Value, building: &Building) -> Result<(), Problem> {
+    for (list, ends, fix) in [
+        (
+            "doors",
+            false,
+            "lies on the join of {}: draw it 10 cm or more beside that, on one of them",
+        ),
+        (
+            "exits",
+            true,
+            "touches the join of {}: end it 2 cm or more before that",
+        ),
+        (
+            "entrances",
+            true,
+            "touches the join of {}: end it 2 cm or more before that",
+        ),
+    ] {
+        let items = document.get(list).and_then(Value::as_array);
+        for (k, item) in items.into_iter().flatten().enumerate() {
+            let Ok(line) = serde_json::from_value::<[[f64; 2]; 2]>(item["line"].clone()) else {
+                continue;
+            };
+            let line = line.map(Vector::from);
+            let mut joins = building.joins_of(item[LEVEL].as_str());
+            let at = joins.find(|(join, _)| match ends {
+                true => touch(line, *join),
+                false => lies_on(line, *join),
+            });
+            if let Some((_, names)) = at {
+                let names = names.map(|name| format!("`{}`", shown(name))).join(" and ");
+                return Err(Problem::new(
+                    format!("{list}[{k}].line"),
+                    fix.replace("{}", &names),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether a line lies on a join.
+fn lies_on([a, b]: [Vector; 2], [c, d]: [Vector; 2]) -> bool {
+    let mut parts = [0.0, 0.5, 1.0].iter().map(|part| a + (b - a) * *part);
+    parts.all(|p| (nearest_on(p, c, d) - p).norm() < ON_JOIN)
+}
+
+/// Whether a line begins at a join, or a join at a line.
+fn touch(line: [Vector; 2], join: [Vector; 2]) -> bool {
+    let near = |p: Vector, [a, b]: [Vector; 2]| (nearest_on(p, a, b) - p).norm() < AT_JOIN;
+    line.iter().any(|&p| near(p, join)) || join.iter().any(|&p| near(p, line))
 }
 
 /// What a document without levels says of joins.
@@ -136,6 +185,12 @@ fn is_empty(value: &Value) -> bool {
 fn place(plane: &mut Value, building: &Building) -> Result<(), Problem> {
     for list in ON_LEVELS {
         for (at, keys) in on_levels(plane, list) {
+            let is_idle = list == "measurements" && !keys[LEVEL].is_null() && !is_somewhere(keys);
+            if is_idle {
+                let reason =
+                    "is that of a `region` or `line`, and there is none: give one, or leave it out";
+                return Err(Problem::new(format!("{at}.{LEVEL}"), reason));
+            }
             place_one(keys, building).map_err(|problem| problem.under(&at))?;
         }
     }
@@ -171,14 +226,18 @@ pub fn without_level(mut document: Value) -> Value {
     document
 }
 
+/// Whether an object has a geometry.
+fn is_somewhere(keys: &Value) -> bool {
+    let mut all = GEOMETRY.iter();
+    all.any(|key| keys[*key].is_array())
+}
+
 fn place_one(element: &mut Value, building: &Building) -> Result<(), Problem> {
+    let is_somewhere = is_somewhere(element);
     let Some(keys) = element.as_object_mut() else {
         return Ok(());
     };
     let level = keys.remove(LEVEL).filter(|level| !level.is_null());
-    let is_somewhere = GEOMETRY
-        .iter()
-        .any(|key| keys.get(*key).is_some_and(Value::is_array));
     match level {
         Some(Value::String(name)) => {
             let way = building.levels.way(building.number(&name)? as i32);
@@ -216,33 +275,6 @@ fn shift(value: &mut Value, x: f64, is_geometry: bool) {
     }
 }
 
-/// Writes the name of each level above it.
-fn name_levels(plane: &mut Value, building: &Building) {
-    let names = building
-        .levels
-        .all()
-        .iter()
-        .zip(&building.floors)
-        .enumerate();
-    let labels = names.filter_map(|(number, (level, floor))| {
-        let [low, high] = bounds(corners(floor))?;
-        let at = building.levels.way(number as i32)
-            + Vector::new((low.x + high.x) / 2.0, high.y + ABOVE);
-        Some(json!({"text": level.name, "at": [at.x, at.y]}))
-    });
-    let mut all: Vec<Value> = labels.collect();
-    if let Some(given) = plane.get("labels").and_then(Value::as_array) {
-        all.extend(given.iter().cloned());
-    }
-    plane["labels"] = all.into();
-}
-
-fn corners(floor: &[Area]) -> impl Iterator<Item = Vector> + '_ {
-    floor
-        .iter()
-        .flat_map(|area| area.exterior.points().iter().copied())
-}
-
 /// Levels in the plane.
 #[derive(Default)]
 struct Laid {
@@ -255,25 +287,29 @@ struct Laid {
 impl Laid {
     /// Lays a level with what is seen of those beyond its joins.
     fn lay(&mut self, building: &Building, number: usize) -> Result<(), Problem> {
-        let own = &building.floors[number];
+        let levels = building.levels.all();
+        let own = &levels[number].floor;
         let way = building.levels.way(number as i32);
         self.floors
             .extend(own.iter().map(|area| polygon(area, way)));
+        let mut before: Vec<Area> = Vec::new();
         for (k, &(line, between)) in building.joins.iter().enumerate() {
             let (line, other) = match between {
                 [one, other] if one == number => (line, other),
                 [other, one] if one == number => ([line[1], line[0]], other),
                 _ => continue,
             };
-            let seen = seen_beyond(line, own, &building.floors[other]);
+            let seen = seen_beyond(line, own, &levels[other].floor);
             let seen = seen.map_err(|problem| problem.under(&format!("joins[{k}].line")))?;
             for area in &seen {
                 self.floors.push(polygon(area, way));
                 let outline = area.exterior.points().iter();
                 self.seen.push(outline.map(|&p| p + way).collect());
             }
-            self.walls
-                .extend(walls_between(own, &seen, line).map(|wall| ring(&wall, way)));
+            let beside = walls_between(own, &seen, Some(line));
+            let walls = beside.chain(walls_between(&before, &seen, None));
+            self.walls.extend(walls.map(|wall| ring(&wall, way)));
+            before.extend(seen);
         }
         Ok(())
     }
@@ -323,7 +359,7 @@ fn seen_beyond([a, b]: [Vector; 2], own: &[Area], other: &[Area]) -> Result<Vec<
 fn walls_between(
     own: &[Area],
     seen: &[Area],
-    join: [Vector; 2],
+    join: Option<[Vector; 2]>,
 ) -> impl Iterator<Item = Vec<Vector>> {
     let edges = |areas: &[Area]| -> Vec<[Vector; 2]> {
         let rings = areas.iter().flat_map(Area::rings);
@@ -347,7 +383,12 @@ fn walls_between(
                 part(c).min(part(d)).max(0.0),
                 part(c).max(part(d)).min(length),
             ];
-            let of_join = lies_on(join).then(|| join.map(part));
+            let of_join = join
+                .filter(|&join| lies_on(join))
+                .map(|join| join.map(part));
+            // Walls that end at two joins leave these alone.
+            let apart = if join.is_none() { 2.0 * THICKNESS } else { 0.0 };
+            let [from, to] = [from + apart, to - apart];
             let free = of_join.map_or([f64::INFINITY; 2], |[c, d]| [c.min(d), c.max(d)]);
             for [from, to] in [[from, to.min(free[0])], [from.max(free[1]), to]] {
                 if to - from > SAME && to > from {

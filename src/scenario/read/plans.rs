@@ -22,6 +22,8 @@ pub const KEYS: [&str; 2] = [WALKABLE_AREA, OBSTACLES];
 const WKT: [&str; 3] = ["POLYGON", "MULTIPOLYGON", "GEOMETRYCOLLECTION"];
 /// The key that says how they are read.
 const READING: &str = "plan";
+/// The levels of a building, which may name files of their own.
+const LEVELS: &str = "levels";
 /// The key that gets the names in these files.
 const LABELS: &str = "labels";
 
@@ -48,6 +50,12 @@ impl Plans {
     ) -> Result<(Self, Vec<PlanFile>), Problem> {
         let (mut plans, mut files) = (Self::default(), Vec::new());
         let reading = reading(document)?;
+        let levels = document.get(LEVELS).and_then(Value::as_array);
+        for k in 0..levels.map_or(0, Vec::len) {
+            let place = format!("{LEVELS}[{k}]");
+            let taken = take_level(document, k, (folder, &reading), notes);
+            files.extend(taken.map_err(|problem| problem.under(&place))?);
+        }
         let mut floor = Vec::new();
         for key in KEYS {
             let Some(named) = named(document, key)? else {
@@ -71,7 +79,7 @@ impl Plans {
                     false => format!("{key}: {name}: {note}"),
                 });
             }
-            label(document, &plan);
+            add_labels(document, labels_of(&plan).collect());
             plans.places.append(&mut plan.places);
             plans.add(document, key, &plan);
             floor.append(&mut plan.walkable);
@@ -108,6 +116,53 @@ impl Plans {
     }
 }
 
+/// Reads the files that level `k` of a building names, into the document. Returns them, each with its key.
+fn take_level(
+    document: &mut Value,
+    k: usize,
+    (folder, reading): (&Path, &Reading),
+    notes: &mut Vec<String>,
+) -> Result<Vec<PlanFile>, Problem> {
+    let mut files = Vec::new();
+    for key in KEYS {
+        let level = &document[LEVELS][k];
+        let Some(named) = named(level, key)? else {
+            continue;
+        };
+        let (name, path) = (level["name"].clone(), folder.join(&named.file));
+        let read = match key {
+            OBSTACLES => floor_plan::read_obstacles_as(&path, reading),
+            _ => floor_plan::read_as(&path, reading),
+        };
+        let plan = read.map_err(|error| named.refused(error).under(key))?;
+        if key == WALKABLE_AREA && plan.walkable.is_empty() {
+            let reason = format!("{}: contains only obstacles", shown(&named.file));
+            return Err(Problem::new(key, reason));
+        }
+        let said = plan.notes.iter();
+        notes.extend(
+            said.map(|note| format!("{LEVELS}[{k}].{key}: {}: {note}", shown(&named.file))),
+        );
+        files.push((LEVELS, path));
+        let own = &mut document[LEVELS][k];
+        match key {
+            OBSTACLES => own[key] = json!(outlines(&plan.obstacles)),
+            _ => {
+                own[key] = json!(polygons(&plan.walkable));
+                if own[OBSTACLES].is_null() {
+                    own[OBSTACLES] = json!(outlines(&plan.obstacles));
+                }
+            }
+        }
+        let labels = labels_of(&plan).map(|mut label| {
+            label["level"] = name.clone();
+            label
+        });
+        add_labels(document, labels.collect());
+    }
+    Ok(files)
+}
+
 /// Writes the geometry of `files`, which `keys` have, into a document that lacks it.
 pub fn write(files: &[PlanFile], keys: &File, document: &mut Value) {
     for &(key, _) in files {
@@ -127,9 +182,9 @@ fn reading(document: &Value) -> Result<Reading, Problem> {
     }
 }
 
-/// Adds the names of a plan to the labels of a document.
-fn label(document: &mut Value, plan: &FloorPlan) {
-    if plan.names.is_empty() {
+/// Adds labels to a document.
+fn add_labels(document: &mut Value, added: Vec<Value>) {
+    if added.is_empty() {
         return;
     }
     if document.get(LABELS).is_none() {
@@ -137,7 +192,7 @@ fn label(document: &mut Value, plan: &FloorPlan) {
     }
     // Anything else is rejected later.
     if let Value::Array(labels) = &mut document[LABELS] {
-        labels.extend(labels_of(plan));
+        labels.extend(added);
     }
 }
 

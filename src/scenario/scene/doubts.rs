@@ -12,6 +12,7 @@ use crate::keys::places::Exit;
 use crate::keys::profiles::ProfileChoice;
 use crate::measurements::Measurement;
 use crate::scene::journeys::TO_EXIT;
+use crate::scene::levels::steep;
 use crate::scene::{changes, eclipsed, jamming, leaving, through_walls, units};
 use engine::entrance::Entrance;
 use engine::forces::legs::Legs;
@@ -77,16 +78,20 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64, last: f64) -> Vec<String
         .chain(unheeded(keys, scene))
         .chain(on_legs(keys, scene))
         .chain(crowded(keys, scene, entering))
+        .chain(steep(&keys.levels, scene.levels.as_deref()))
         .collect()
 }
 
 /// A note on crowds on a floor plan with several ways, whose agents take the shortest one because neither the file nor
 /// a journey says how they choose.
 fn crowded(keys: &File, scene: &Scene, entering: u64) -> Option<String> {
-    // In a building no choice by time is known.
-    let is_floor = keys.walkable_area.is_some() && keys.levels.is_empty();
-    let is_open = is_floor && keys.route_choice.is_none();
+    let is_open = keys.route_choice.is_none();
     let rings = scene.walls.obstacles().iter().flat_map(|one| one.rings());
+    // Levels have a choice of stairs if their joins are more than lead once to each of them.
+    let is_wide = match &scene.levels {
+        Some(levels) => levels.joins().len() / 2 >= levels.all().len(),
+        None => keys.walkable_area.is_some() && rings.count() > 1,
+    };
     let exits = scene.groups.iter().any(|group| {
         let to = group
             .journey
@@ -97,7 +102,8 @@ fn crowded(keys: &File, scene: &Scene, entering: u64) -> Option<String> {
         let mut stages = leaving::stages(scene, group);
         stages.any(|stage| stage.choice == Choice::Quickest)
     });
-    let has_choice = !looks && scene.routes.is_some() && (rings.count() > 1 || exits);
+    let is_floor = keys.walkable_area.is_some() || scene.levels.is_some();
+    let has_choice = !looks && is_floor && scene.routes.is_some() && (is_wide || exits);
     (is_open && has_choice && entering >= CROWD).then(|| {
         "all agents take the shortest way, however many wait there; with `route_choice` `quickest` they take the way \
          of the least time (`shortest` in the file hides this note)"

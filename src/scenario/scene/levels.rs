@@ -5,25 +5,67 @@ use crate::error::{Problem, Under, suggestion};
 use crate::floor_plan::{FloorPlan, Rings, free, rings};
 use crate::keys::levels::{Join, Level, LevelKind, Speeds};
 use crate::keys::shapes::{Outline, Ring};
+use engine::agents::Agents;
 use engine::geometry::Area;
-use engine::levels::{Level as Sheet, Levels};
-use engine::math::{Vector, bounds, direction, perpendicular};
+use engine::levels::{FARTHEST, Level as Sheet, Levels};
+use engine::math::{Vector, direction, perpendicular};
+use engine::scene::Scene;
 
 /// Levels have the same height at a join within this, meters.
 const SAME_HEIGHT: f64 = 0.05;
+/// The floor must reach a join at these parts of it.
+const AT_JOIN: [f64; 9] = [0.02, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.98];
+const AT_ENDS: [f64; 2] = [0.02, 0.98];
+/// Stairs and ramps that rise more than this, meters per meter, are noted.
+const STEEP: [(LevelKind, f64); 2] = [(LevelKind::Stairs, 1.0), (LevelKind::Ramp, 0.15)];
 /// Beside a join is what lies this far from it, meters.
 const BESIDE: f64 = 1e-3;
 /// The preferred speeds on a floor, up and down stairs, seen from above, m/s (Weidmann 1993).
 const WEIDMANN: [f64; 3] = [1.34, 0.610, 0.694];
 
+/// Refuses people of a building who look so far that they would see those on the next level of the engine's plane.
+pub fn check_reach(scene: &Scene) -> Result<(), Problem> {
+    let ranges = scene.ranges(&scene.needs(), &Agents::default());
+    let radii = [ranges.avoidance, ranges.wide, Some(ranges.support)];
+    let farthest = radii.into_iter().flatten().fold(0.0, f64::max);
+    if scene.levels.is_none() || farthest <= FARTHEST {
+        return Ok(());
+    }
+    let reason = format!(
+        "people look {} m far, and in buildings at most {FARTHEST} m: lower `avoidance_radius`, `support_radius` or \
+         preferred speeds",
+        to_centimeters(farthest)
+    );
+    Err(Problem::new("levels", reason))
+}
+
+/// Notes on stairs and ramps that are steeper than real ones.
+pub fn steep(keys: &[Level], levels: Option<&Levels>) -> Vec<String> {
+    let sheets = levels.map_or(&[][..], Levels::all).iter();
+    let numbered = keys.iter().zip(sheets).enumerate();
+    let note = |(k, (level, sheet)): (usize, (&Level, &Sheet))| {
+        let (_, most) = STEEP.iter().find(|(kind, _)| *kind == level.kind)?;
+        let rise = sheet.rise.norm();
+        (rise > most + 1e-9).then(|| {
+            format!(
+                "levels[{k}]: `{}` rises {} m per meter: check elevations, and that the unit is meters",
+                shown(&level.name),
+                to_centimeters(rise)
+            )
+        })
+    };
+    numbered.filter_map(note).collect()
+}
+
+/// The line of a join in the building, meters, and the numbers of its levels, the first of which lies on its left.
+pub type Joined = ([Vector; 2], [usize; 2]);
+
 /// The levels of a building with what people can walk on.
 pub struct Building {
     /// The levels, side by side in the plane of the engine.
     pub levels: Levels,
-    /// The floor of each level in the building, without its obstacles.
-    pub floors: Vec<Vec<Area>>,
-    /// The line of each join in the building and the numbers of its levels, the first of which lies on its left.
-    pub joins: Vec<([Vector; 2], [usize; 2])>,
+    /// The joins in the building.
+    pub joins: Vec<Joined>,
 }
 
 impl Building {
@@ -47,7 +89,8 @@ impl Building {
         }
         let mut sheets = Vec::with_capacity(levels.len());
         for (k, level) in levels.iter().enumerate() {
-            sheets.push(sheet(k, levels, &found).map_err(|reason| {
+            let floor = floors[k].clone();
+            sheets.push(sheet(k, (levels, &found), floor).map_err(|reason| {
                 let of = format!("`{}`: {reason}", shown(&level.name));
                 Problem::new(format!("levels[{k}]"), of)
             })?);
@@ -56,20 +99,26 @@ impl Building {
             check_heights(*line, between.map(|number| &sheets[number]))
                 .under(&format!("joins[{k}].line"))?;
         }
-        let points = floors
-            .iter()
-            .flatten()
-            .flat_map(|area| area.exterior.points());
-        let corners = bounds(points.copied()).unwrap_or_default();
-        let mut side_by_side = Levels::new(corners, sheets);
+        let mut side_by_side = Levels::new(sheets);
         for &(line, between) in &found {
             side_by_side.join(line, between);
         }
         Ok(Self {
             levels: side_by_side,
-            floors,
             joins: found,
         })
+    }
+
+    /// The joins of the level of this name, each with the names of its two levels.
+    pub fn joins_of<'a>(
+        &'a self,
+        level: Option<&'a str>,
+    ) -> impl Iterator<Item = ([Vector; 2], [&'a str; 2])> {
+        let named = self.joins.iter().map(|&(line, between)| {
+            let names = between.map(|number| self.levels.all()[number].name.as_str());
+            (line, names)
+        });
+        named.filter(move |(_, names)| names.iter().any(|name| Some(*name) == level))
     }
 
     /// The number of the level of this name.
@@ -126,11 +175,7 @@ fn floor(level: &Level) -> Result<Vec<Area>, Problem> {
 }
 
 /// The line of a join, turned so that the first of its levels lies on its left.
-fn oriented(
-    join: &Join,
-    levels: &[Level],
-    floors: &[Vec<Area>],
-) -> Result<([Vector; 2], [usize; 2]), Problem> {
+fn oriented(join: &Join, levels: &[Level], floors: &[Vec<Area>]) -> Result<Joined, Problem> {
     let number = |k: usize| {
         let name = &join.levels[k];
         let found = levels.iter().position(|level| level.name == *name);
@@ -149,34 +194,54 @@ fn oriented(
         return Err(Problem::new("line", "has no length"));
     }
     let left = perpendicular(direction(b - a)) * BESIDE;
-    let lies = |number: usize, way: Vector| {
-        let at = [0.02, 0.5, 0.98].map(|part| a + (b - a) * part + way);
-        let floor = &floors[number];
-        at.iter()
-            .all(|p| floor.iter().any(|area| area.contains(*p)))
+    let lies = |number: usize, way: Vector, parts: &[f64]| {
+        let mut parts = parts.iter();
+        parts.all(|part| {
+            let p = a + (b - a) * *part + way;
+            floors[number].iter().any(|area| area.contains(p))
+        })
     };
-    let sides = between.map(|number| [lies(number, left), lies(number, -left)]);
-    match sides {
+    let sides_of = |parts: &[f64]| {
+        between.map(|number| [lies(number, left, parts), lies(number, -left, parts)])
+    };
+    match sides_of(&AT_JOIN) {
         [[true, false], [false, true]] => Ok(([a, b], between)),
         [[false, true], [true, false]] => Ok(([b, a], between)),
-        _ => {
-            let wrong = between.iter().zip(sides).find_map(|(&number, sides)| {
-                let name = shown(&levels[number].name);
-                match sides {
-                    [true, true] => Some(format!("`{name}` lies on both sides of it")),
-                    [false, false] => Some(format!("`{name}` lies on neither side of it")),
-                    _ => None,
-                }
-            });
-            let wrong = wrong.unwrap_or("both lie on the same side of it".to_owned());
-            let reason = format!("must be an edge of both levels, from end to end: {wrong}");
-            Err(Problem::new("line", reason))
+        sides => {
+            let names = between.map(|number| levels[number].name.as_str());
+            Err(not_an_edge(names, [sides, sides_of(&AT_ENDS)]))
         }
     }
 }
 
+/// The problem of a join of two levels, from where the floor of each lies along all of it, and at its ends: on its left
+/// and on its right.
+fn not_an_edge(names: [&str; 2], [sides, ends]: [[[bool; 2]; 2]; 2]) -> Problem {
+    let of_level = |k: usize| {
+        let name = shown(names[k]);
+        match (sides[k], ends[k]) {
+            ([true, true], _) => Some(format!("`{name}` lies on both sides of it")),
+            ([false, false], [false, false]) => {
+                Some(format!("`{name}` lies on neither side of it"))
+            }
+            ([false, false], _) => Some(format!(
+                "`{name}` has a wall or an obstacle at a part of it"
+            )),
+            _ => None,
+        }
+    };
+    let same = || "both lie on the same side of it".to_owned();
+    let wrong = of_level(0).or_else(|| of_level(1)).unwrap_or_else(same);
+    let reason = format!("must be an edge of both levels, from end to end: {wrong}");
+    Problem::new("line", reason)
+}
+
 /// The plane of level `k`.
-fn sheet(k: usize, levels: &[Level], joins: &[([Vector; 2], [usize; 2])]) -> Result<Sheet, String> {
+fn sheet(
+    k: usize,
+    (levels, joins): (&[Level], &[Joined]),
+    floor: Vec<Area>,
+) -> Result<Sheet, String> {
     let level = &levels[k];
     let name = level.name.clone();
     if level.kind == LevelKind::Floor {
@@ -190,6 +255,7 @@ fn sheet(k: usize, levels: &[Level], joins: &[([Vector; 2], [usize; 2])]) -> Res
             elevation,
             rise: Vector::zeros(),
             speed_factors: [1.0; 2],
+            floor,
         });
     }
     if level.elevation.is_some() {
@@ -218,7 +284,19 @@ fn sheet(k: usize, levels: &[Level], joins: &[([Vector; 2], [usize; 2])]) -> Res
         ));
     }
     let rise = normal * ((high - low) / far);
-    let factors = match (level.speed_factors, level.speeds, level.kind) {
+    Ok(Sheet {
+        name,
+        at: a,
+        elevation: low,
+        rise,
+        speed_factors: speed_factors(level, rise)?,
+        floor,
+    })
+}
+
+/// The speeds along a slope, up and down, over that on a floor.
+fn speed_factors(level: &Level, rise: Vector) -> Result<[f64; 2], String> {
+    Ok(match (level.speed_factors, level.speeds, level.kind) {
         (Some(_), Some(_), _) => return Err("give `speeds` or `speed_factors`".to_owned()),
         (Some(factors), None, _) => factors,
         (None, Some(Speeds::Same), _) | (None, None, LevelKind::Ramp) => [1.0; 2],
@@ -226,13 +304,6 @@ fn sheet(k: usize, levels: &[Level], joins: &[([Vector; 2], [usize; 2])]) -> Res
             let [flat, up, down] = WEIDMANN;
             [up, down].map(|speed| speed / flat * (1.0 + rise.norm_squared()).sqrt())
         }
-    };
-    Ok(Sheet {
-        name,
-        at: a,
-        elevation: low,
-        rise,
-        speed_factors: factors,
     })
 }
 
@@ -256,8 +327,11 @@ fn check_heights(line: [Vector; 2], sheets: [&Sheet; 2]) -> Result<(), Problem> 
     Ok(())
 }
 
-/// A text for people, in which places of the plane become those of the building: `(x, y) on `level``.
-pub fn in_building(levels: &Levels, text: &str) -> String {
+/// A text for people, in which places of the plane become those of a building, if it is one: `(x, y) on `level``.
+pub fn in_building(levels: Option<&Levels>, text: &str) -> String {
+    let Some(levels) = levels else {
+        return text.to_owned();
+    };
     let mut said = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(open) = rest.find('(') {

@@ -124,9 +124,21 @@ fn check_behind(scene: &Scene, rings: &[Ring], p: Vector) -> Result<(), Problem>
     if is_on_line(scene, start) || !rings.iter().any(|ring| ring.contains(start)) {
         return Ok(());
     }
+    let is_seen = scene.levels.as_ref().is_some_and(|levels| {
+        let (level, at) = (
+            &levels.all()[levels.level(start)],
+            levels.in_building(start),
+        );
+        !level.floor.iter().any(|area| area.contains(at))
+    });
+    let where_to = match is_seen {
+        true => "outside of this level; move it onto the floor, or name the level there",
+        false => {
+            "behind the line of an exit or entrance and outside of the walkable area; move it onto the floor"
+        }
+    };
     let reason = format!(
-        "an agent starts at ({:.2}, {:.2}), behind the line of an exit or entrance and outside of the walkable area; \
-         move it onto the floor",
+        "an agent starts at ({:.2}, {:.2}), {where_to}",
         start.x, start.y
     );
     Err(Problem::new("", reason))

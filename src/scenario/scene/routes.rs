@@ -135,10 +135,6 @@ fn check_navigation(keys: &File, scene: &Scene, has_journeys: bool) -> Result<()
             "no agent walks to an exit: all have goals; remove `goal`, or give agents a `journey`";
         return Err(Problem::new("exits", reason));
     }
-    if scene.levels.is_some() && scene.by_time() {
-        let reason = "`quickest` routes are not known in buildings yet; remove it";
-        return Err(Problem::new("route_choice", reason));
-    }
     if keys.navigation == WayFinding::Straight {
         for (key, is_given) in [
             ("route_choice", scene.by_time()),
@@ -239,11 +235,12 @@ impl Prepared<'_> {
         let places = self.places.iter().map(|place| place.goals.clone());
         let goals: Vec<_> = places.chain(goals).collect();
         let areas = areas(self.scene, self.starts)?;
+        let floor = (&areas[..], self.scene.levels.as_ref());
         let mut widths = [WIDEST, f64::INFINITY].into_iter();
         loop {
             let widest = widths.next().unwrap_or(f64::INFINITY);
             let rooms =
-                Rooms::new(&areas, self.width, &doors, widest, &goals).map_err(|error| {
+                Rooms::new(floor, [self.width, widest], &doors, &goals).map_err(|error| {
                     let of_doors = match error {
                         WayError::Crossing(at) => doors::crossing(self.places, at),
                         _ => None,
@@ -291,6 +288,10 @@ impl Prepared<'_> {
 }
 
 fn unusable(error: WayError) -> Problem {
+    if let WayError::Join(_) = error {
+        let reason = format!("{error}: it must be an edge of both, without gaps and walls");
+        return Problem::new("joins", reason);
+    }
     let reason = format!(
         "no routes can be found: {error}; mend the plan, or set `navigation` to `straight`"
     );

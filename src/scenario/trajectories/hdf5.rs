@@ -8,6 +8,7 @@ use std::path::Path;
 use hdf5_pure::{AttrValue, CompoundMember, Dataset, Datatype, DatatypeByteOrder, File};
 
 use super::error::ReadError;
+use super::level::Levels;
 use super::tracks::{Contents, Entry, Tracks};
 use super::{ReadOptions, Unit, frame_rate};
 use engine::math::Vector;
@@ -20,6 +21,7 @@ const MOST_COMPRESSED: u64 = 1100;
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let contents = contents(path, options)
         .map_err(|problem| ReadError::file(path, shown_message(&problem)))?;
+    Levels::new(&options.level).check(path)?;
     Tracks::new(path, contents, options)
 }
 

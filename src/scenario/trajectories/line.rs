@@ -1,5 +1,6 @@
 //! The columns of a line of text.
 
+use super::level::LEVEL;
 use super::tracks::Entry;
 use super::{UNITS, Unit};
 use crate::error::quote::shown;
@@ -37,6 +38,7 @@ pub struct Columns {
     /// The unit of times, seconds.
     pub seconds: f64,
     pub mass: Option<usize>,
+    pub level: Option<usize>,
 }
 
 impl Default for Columns {
@@ -50,6 +52,7 @@ impl Default for Columns {
             time: None,
             seconds: 1.0,
             mass: None,
+            level: None,
         }
     }
 }
@@ -72,11 +75,6 @@ impl Columns {
         if frame.or(time).is_none() {
             return Ok(None);
         }
-        if find(&["level"]).is_some() && find(&["pos_x"]).is_some() {
-            let reason = "the people are on several levels of a building, side by side or above each other: keep \
-                          those of one `level`, and leave that column out";
-            return Err(reason.to_owned());
-        }
         let columns = Self {
             id,
             frame,
@@ -85,6 +83,7 @@ impl Columns {
             time,
             seconds: time.map_or(Ok(1.0), |time| seconds(&names[time].1))?,
             mass: find(&["mass"]),
+            level: find(&[LEVEL]),
         };
         let (base, unit) = &names[x];
         let by_name = IN_METERS.contains(&base.as_str()).then_some(Unit::Meter);

@@ -9,13 +9,15 @@
 //! | text with eight columns | ETH and UCY, `obsmat.txt` | frame, id, x, z, y, velocities |
 //!
 //! Results are in meters and seconds. Frame f is at the time f / fps. A person's rows are a number of frames apart, and
-//! people may have frames of their own: [`Tracks::together`] has all people in the same frames.
+//! people may have frames of their own: [`Tracks::together`] has all people in the same frames. Of a building, the
+//! people on one level are read.
 
 mod columns;
 mod error;
 #[cfg(feature = "program")]
 mod hdf5;
 mod jumps;
+mod level;
 mod line;
 mod order;
 mod places;
@@ -31,6 +33,7 @@ mod unit;
 
 pub use columns::{Column, columns};
 pub use error::ReadError;
+pub use level::OnLevel;
 pub use tracks::{TOO_FAST, Tracks};
 pub use unit::{UNITS, Unit};
 
@@ -57,12 +60,14 @@ const RECORDING_MAGIC: &[u8] = b"RRF";
 pub const FRAME_RATES: RangeInclusive<f64> = 1e-6..=1e6;
 
 /// Information that a file may lack; it takes precedence over the file's.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReadOptions {
     /// The unit of the coordinates.
     pub unit: Option<Unit>,
     /// Frames per second, above 0.
     pub fps: Option<f64>,
+    /// The level of a building.
+    pub level: OnLevel,
 }
 
 impl ReadOptions {

@@ -7,6 +7,7 @@ use rusqlite::types::ValueRef;
 use rusqlite::{Connection, OpenFlags, Row as Values};
 
 use super::error::ReadError;
+use super::level::{LEVEL, Levels, OnLevel};
 use super::rows::{Key, Row};
 use super::tracks::{Contents, Entry, Tracks};
 use super::{ReadOptions, Unit, frame_rate};
@@ -29,17 +30,20 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
         };
         return Err(ReadError::file(path, problem));
     }
-    let has_mass = columns.iter().any(|name| name == "mass");
+    let has = |column: &str| columns.iter().any(|name| name == column);
+    let (has_mass, has_levels) = (has("mass"), has(LEVEL));
+    let mut levels = Levels::new(&options.level);
     let mut contents = Contents {
         unit: Some(Unit::Meter),
         has_mass,
         fps: frames_per_second(&connection, options).map_err(|what| ReadError::file(path, what))?,
-        walkable: walkable(&connection).map_err(failed)?,
+        walkable: walkable(&connection, &options.level).map_err(failed)?,
         place: "row",
         ..Contents::default()
     };
     let mass = if has_mass { "mass" } else { "1.0" };
-    let text = format!("SELECT frame, id, pos_x, pos_y, {mass} FROM trajectory_data");
+    let level = if has_levels { LEVEL } else { "NULL" };
+    let text = format!("SELECT frame, id, pos_x, pos_y, {mass}, {level} FROM trajectory_data");
     let mut query = connection.prepare(&text).map_err(failed)?;
     let mut rows = query.query([]).map_err(failed)?;
     let mut line = 0;
@@ -52,11 +56,17 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
                 "trajectory_data has more rows than fit into the file: it is damaged, or a view";
             return Err(ReadError::file(path, problem));
         }
+        if let Ok(ValueRef::Text(name)) = row.get_ref(5)
+            && !levels.includes(&String::from_utf8_lossy(name))
+        {
+            continue;
+        }
         let entry = entry(row, line).map_err(|what| {
             ReadError::file(path, format!("row {line} of trajectory_data: {what}"))
         })?;
         contents.entries.push(entry);
     }
+    levels.check(path)?;
     Tracks::new(path, contents, options)
 }
 
@@ -148,8 +158,19 @@ fn frames_per_second(
 }
 
 /// The distinct walkable areas as text, in no particular order. There are several if doors open or close. Values that
-/// are not text are converted to text, so that the floor-plan reader rejects them if they are used.
-fn walkable(connection: &Connection) -> rusqlite::Result<Vec<String>> {
+/// are not text are converted to text, so that the floor-plan reader rejects them if they are used. The level of a
+/// building has its own in a table `levels`.
+fn walkable(connection: &Connection, level: &OnLevel) -> rusqlite::Result<Vec<String>> {
+    let of_level = match level {
+        OnLevel::Named(name) => connection
+            .prepare("SELECT wkt FROM levels WHERE name = ?")
+            .and_then(|mut query| query.query_row([name], |row| row.get(0)))
+            .ok(),
+        OnLevel::Only | OnLevel::Any => None,
+    };
+    if let Some(wkt) = of_level {
+        return Ok(vec![wkt]);
+    }
     let Ok(mut query) = connection.prepare("SELECT DISTINCT wkt FROM geometry") else {
         return Ok(Vec::new());
     };

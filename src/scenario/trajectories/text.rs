@@ -4,6 +4,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 use super::error::ReadError;
+use super::level::Levels;
 use super::line::{self, Columns, number, words};
 use super::order::{self, Wide};
 use super::times::{self, Times};
@@ -29,10 +30,22 @@ struct Rows {
     /// The time of each row, seconds, if there are no frames.
     instants: Vec<f64>,
     wide: Wide,
+    levels: Levels,
 }
 
 impl Rows {
+    fn new(options: &ReadOptions) -> Self {
+        Self {
+            levels: Levels::new(&options.level),
+            ..Self::default()
+        }
+    }
+
     fn add(&mut self, cells: &[&str], line: u64) -> Result<(), String> {
+        let level = self.columns.level.and_then(|place| cells.get(place));
+        if level.is_some_and(|name| !self.levels.includes(name)) {
+            return Ok(());
+        }
         let entry = self.columns.entry(cells, line)?;
         match (self.columns.time(cells)?, self.columns.frame) {
             (Some(time), Some(_)) => self.times.add(entry.frame, time),
@@ -46,6 +59,7 @@ impl Rows {
 
     /// The tracks of all rows.
     fn tracks(self, path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
+        self.levels.check(path)?;
         let mut contents = self.contents;
         let failed = |problem| ReadError::file(path, problem);
         contents.place = "line";
@@ -111,7 +125,7 @@ fn read_columns<R: Read>(
     mut text: Text<R>,
     options: &ReadOptions,
 ) -> Result<Tracks, ReadError> {
-    let mut rows = Rows::default();
+    let mut rows = Rows::new(options);
     rows.contents.is_unnamed = true;
     let (mut bytes, mut number) = (Vec::new(), 0);
     let failed = |line, problem: String| ReadError::line(path, line, problem);
@@ -268,7 +282,7 @@ impl<'a, R: Read> Table<'a, R> {
     }
 
     fn tracks(mut self, options: &ReadOptions) -> Result<Tracks, ReadError> {
-        let mut rows = Rows::default();
+        let mut rows = Rows::new(options);
         self.each(|&columns, cells, line| {
             rows.columns = columns;
             rows.add(cells, line)

@@ -19,6 +19,7 @@ pub use mesh::{Mesh, Triangle};
 pub use narrow::{Narrow, narrow};
 pub use narrowings::{Narrowing, Narrowings};
 pub use passage::{Passage, Passages};
+pub use sheets::{Joins, Sheets, meets_join};
 
 use std::sync::Arc;
 
@@ -29,7 +30,6 @@ use crate::geometry::Area;
 use crate::levels::Levels;
 use crate::math::{Vector, bytes_of};
 use grid::Grid;
-use sheets::Sheets;
 
 /// A floor with its corners and the routes between them.
 #[derive(Debug, Clone)]
@@ -85,7 +85,8 @@ impl Floor {
         Self::prepared(mesh, None, least_width)
     }
 
-    fn prepared(mesh: Mesh, sheets: Option<Sheets>, least_width: f64) -> Self {
+    /// Prepares triangles, of several levels with those in the plane, whose narrower passages are closed already.
+    pub fn prepared(mesh: Mesh, sheets: Option<Sheets>, least_width: f64) -> Self {
         let corners = Corner::all(&mesh, least_width);
         let mut at = vec![[None; 3]; mesh.triangles().len()];
         for (c, corner) in corners.iter().enumerate() {
@@ -195,6 +196,17 @@ impl Floor {
             true => point + (p - self.in_building(p)),
             false => point,
         }
+    }
+
+    /// Where a point of triangle `t` in the building lies in the plane, meters.
+    pub fn in_plane(&self, t: u32, p: Vector) -> Vector {
+        let sheets = self.sheets.as_ref();
+        sheets.map_or(p, |sheets| sheets.in_plane(t, p))
+    }
+
+    /// The triangles of several levels in the plane.
+    pub fn sheets(&self) -> Option<&Sheets> {
+        self.sheets.as_ref()
     }
 
     /// Whether two points in the plane lie on the same level.

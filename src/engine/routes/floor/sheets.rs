@@ -8,14 +8,17 @@ use std::sync::Arc;
 
 use super::lines::{side, to_segment};
 use super::mesh::Mesh;
-use super::narrow::narrow;
+use super::narrow::{Narrow, narrow};
 use crate::geometry::Area;
 use crate::levels::{Join, Levels};
-use crate::math::{Vector, direction};
+use crate::math::{Vector, direction, perpendicular};
 use crate::routes::WayError;
 
 /// Points of two levels this near to each other are the same, meters.
 const SAME: f64 = 1e-5;
+
+/// Joins are too narrow if they are narrower than the least width by more than this, meters.
+const ROUNDING: f64 = 1e-6;
 
 /// Joins are drawn this far into the walls at their ends: by rounding, they could end just before them, meters.
 const INTO_WALLS: f64 = 1e-3;
@@ -31,6 +34,41 @@ pub struct Sheets {
     pub level: Vec<usize>,
     /// The levels.
     pub levels: Arc<Levels>,
+}
+
+impl Sheets {
+    /// Where a point of triangle `t` in the building lies in the plane, meters.
+    pub fn in_plane(&self, t: u32, p: Vector) -> Vector {
+        p + self.levels.way(self.level[t as usize] as i32)
+    }
+
+    /// The number of the join between two triangles that are glued, or closed, there; `None` on one level.
+    pub fn join_between(&self, [one, other]: [u32; 2], ends: [Vector; 2]) -> Option<usize> {
+        let [from, to] = [one, other].map(|t| self.level[t as usize] as i32);
+        let ends = ends.map(|p| self.in_plane(one, p));
+        let mut joins = self.levels.joins().iter();
+        let found = joins.position(|join| {
+            let [a, b] = join.line;
+            let is_on = |p: &Vector| to_segment(*p, a, b) <= SAME;
+            join.to == to - from && ends.iter().all(is_on)
+        });
+        found.filter(|_| from != to)
+    }
+
+    /// By how much the way from one place in triangle `t` to another takes longer than on a floor.
+    pub fn effort(&self, t: u32, [from, to]: [Vector; 2]) -> f64 {
+        let level = &self.levels.all()[self.level[t as usize]];
+        1.0 / level.speed_factor(direction(to - from))
+    }
+}
+
+/// What lies on the two sides of joins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Joins {
+    /// People walk across those of at least this width, meters.
+    Open(f64),
+    /// They are closed like doors.
+    Closed,
 }
 
 /// A side of a triangle along a join.
@@ -53,23 +91,37 @@ impl Mesh {
         least_width: f64,
         levels: Arc<Levels>,
     ) -> Result<(Self, Sheets), WayError> {
-        let lines: Vec<[Vector; 2]> = levels.joins().iter().map(|join| join.line).collect();
         let open = Self::new(areas, 0.0)?;
         let mut closed = narrow(&open, least_width);
-        closed.retain(|passage| {
-            let ends = passage.ends(&open);
-            !lines.iter().any(|line| meet(ends, *line))
-        });
-        let drawn: Vec<[Vector; 2]> = lines.iter().copied().map(into_walls).collect();
-        let divided = Self::divided(areas, &closed, &drawn)?;
+        closed.retain(|passage| !meets_join(passage.ends(&open), &levels));
+        let whole = Self::new(areas, least_width)?;
+        let (glued, sheets) =
+            Self::glued_with(areas, (&closed, &[]), levels, Joins::Open(least_width))?;
+        Ok((glued, Sheets { whole, ..sheets }))
+    }
+
+    /// The same with passages and lines that are closed.
+    ///
+    /// # Errors
+    /// As [`glued`](Self::glued).
+    pub fn glued_with(
+        areas: &[Area],
+        (passages, lines): (&[Narrow], &[[Vector; 2]]),
+        levels: Arc<Levels>,
+        joins: Joins,
+    ) -> Result<(Self, Sheets), WayError> {
+        let ends: Vec<[Vector; 2]> = levels.joins().iter().map(|join| join.line).collect();
+        let joined = ends.iter().map(|&line| into_walls(line, &ends, areas));
+        let drawn: Vec<[Vector; 2]> = joined.chain(lines.iter().copied()).collect();
+        let divided = Self::divided(areas, passages, &drawn)?;
         let beyond = divided.beyond_joins(&levels);
         let mesh = divided.without(&beyond);
         let on_level = |t: u32| levels.level(mesh.middle(t));
         let level: Vec<usize> = (0..mesh.triangles.len() as u32).map(on_level).collect();
-        let glued = mesh.joined(&levels, &level)?;
+        let glued = mesh.joined(&levels, &level, joins)?;
         let sheets = Sheets {
+            whole: mesh.clone(),
             mesh,
-            whole: Self::new(areas, least_width)?,
             level,
             levels,
         };
@@ -156,8 +208,8 @@ impl Mesh {
         }
     }
 
-    /// The triangles at their places in the building, glued at the joins.
-    fn joined(&self, levels: &Levels, level: &[usize]) -> Result<Self, WayError> {
+    /// The triangles at their places in the building, glued at the joins, or closed there.
+    fn joined(&self, levels: &Levels, level: &[usize], joins: Joins) -> Result<Self, WayError> {
         let mut glued = self.clone();
         let mut same: Vec<u32> = (0..self.points.len() as u32).collect();
         for (t, triangle) in self.triangles.iter().enumerate() {
@@ -172,13 +224,20 @@ impl Mesh {
                 to: -join.to,
             };
             let (own, other) = (self.edges_at(join), self.edges_at(&beyond));
+            let width = (join.line[1] - join.line[0]).norm();
             let differ = || WayError::Join(join.line[0]);
             if own.is_empty() || own.len() != other.len() {
                 return Err(differ());
             }
             for (one, two) in own.into_iter().zip(other.into_iter().rev()) {
-                glued.triangles[one.triangle as usize].across[one.side] = Some(two.triangle);
-                glued.triangles[two.triangle as usize].across[two.side] = Some(one.triangle);
+                for (here, there) in [(one, two), (two, one)] {
+                    let triangle = &mut glued.triangles[here.triangle as usize];
+                    let beyond = match joins {
+                        Joins::Open(least) if width > least - ROUNDING => &mut triangle.across,
+                        Joins::Open(_) | Joins::Closed => &mut triangle.closed,
+                    };
+                    beyond[here.side] = Some(there.triangle);
+                }
                 let ends = |edge: Edge| {
                     let corners = self.triangle(edge.triangle).corners;
                     [corners[edge.side], corners[(edge.side + 1) % 3]]
@@ -201,10 +260,22 @@ impl Mesh {
     }
 }
 
-/// A line that is longer at both ends.
-fn into_walls([a, b]: [Vector; 2]) -> [Vector; 2] {
+/// A line that is longer at its ends, but for those at which another of all `lines` begins, and those on the floor, at
+/// which an exit may begin.
+fn into_walls([a, b]: [Vector; 2], lines: &[[Vector; 2]], areas: &[Area]) -> [Vector; 2] {
     let more = direction(b - a) * INTO_WALLS;
-    [a - more, b + more]
+    let aside = perpendicular(more) * 0.5;
+    [(a, -more), (b, more)].map(|(end, more)| {
+        let is_end = |line: &&[Vector; 2]| line.iter().any(|other| (other - end).norm() <= SAME);
+        let is_on_floor = [aside, -aside].iter().all(|aside| {
+            let p = end + more + aside;
+            areas.iter().any(|area| area.contains(p))
+        });
+        match lines.iter().filter(is_end).count() == 1 && !is_on_floor {
+            true => end + more,
+            false => end,
+        }
+    })
 }
 
 /// The point that stands for all that are the same.
@@ -213,6 +284,12 @@ fn root(same: &[u32], mut point: u32) -> u32 {
         point = same[point as usize];
     }
     point
+}
+
+/// Whether a passage in the plane crosses a join, or lies on it.
+pub fn meets_join(ends: [Vector; 2], levels: &Levels) -> bool {
+    let mut joins = levels.joins().iter();
+    joins.any(|join| meet(ends, join.line))
 }
 
 /// Whether a segment crosses a line, or lies on it.

@@ -154,7 +154,7 @@ impl Routes {
 
     /// Divides the floor into rooms.
     pub fn divide(&mut self, rooms: Rooms) {
-        let mesh = &rooms.floor.mesh;
+        let mesh = rooms.floor.plane();
         let triangles = (0..mesh.triangles().len() as u32).into_par_iter();
         let beneath = triangles.map(|t| self.floor.locate_or_nearest(None, mesh.middle(t)));
         self.beneath = beneath.collect();

@@ -49,14 +49,15 @@ impl Routes {
         length: Option<f64>,
     ) -> Option<RoutesOut> {
         let (rooms, goal) = (self.rooms.as_ref()?, usize::from(map));
+        let at = rooms.floor.in_building(p);
         let sides = rooms.sides_in(rooms.room(t)).iter();
         let sides = sides.filter(|&&side| rooms.length_from(side, goal).is_finite());
         let through = sides.filter_map(|&side| {
             let known = others.and_then(|others| others.through(side));
-            Some((side, known.or_else(|| rooms.lengths_to(p, t, side))?))
+            Some((side, known.or_else(|| rooms.lengths_to(at, t, side))?))
         });
         let through: Vec<_> = through.collect();
-        let direct = rooms.length_to_goal(p, t, goal);
+        let direct = rooms.length_to_goal(at, t, goal);
         let only = match through[..] {
             [(only, _)] if direct.is_none() && !rooms.has_one_way() => Some(only),
             _ => None,
@@ -84,10 +85,11 @@ impl Routes {
     ) -> Option<Shortest> {
         let here = self.floor.locate_or_nearest(self.beneath[t as usize], p)?;
         let map = &self.maps[goal];
-        let way = map.way(&self.floor, p, here, None)?;
+        let at = self.floor.in_building(p);
+        let way = map.way(&self.floor, at, here, None)?;
         let first = || {
             let points = points(&self.floor, map, way.next);
-            self.rooms.as_ref()?.first_crossing(p, t, points)
+            self.rooms.as_ref()?.first_crossing(at, t, points)
         };
         Some(Shortest {
             side: only.or_else(|| first().map(|first| first.side)),

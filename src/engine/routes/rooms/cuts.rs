@@ -1,9 +1,14 @@
 //! Where the floor is divided into rooms: narrow places and doors.
 
+use std::sync::Arc;
+
 use crate::geometry::Area;
+use crate::levels::Levels;
 use crate::math::{Vector, direction};
 use crate::routes::WayError;
-use crate::routes::floor::{Mesh, Narrow, narrow, side, to_segment};
+use crate::routes::floor::{
+    Floor, Joins, Mesh, Narrow, Sheets, meets_join, narrow, side, to_segment,
+};
 
 /// Of two passages whose middles are nearer than this part of the width of the narrower one, such as the two sides of a
 /// wall with a door, only the narrower one is an opening.
@@ -44,15 +49,24 @@ pub struct Cuts {
     /// Their ends, meters, then those of doors.
     lines: Vec<[Vector; 2]>,
     doors: Vec<Door>,
+    /// Narrower joins are closed, meters.
+    least_width: f64,
 }
 
 impl Cuts {
-    /// The passages up to `widest` meters and the doors of a floor with this triangulation.
-    pub fn of(mesh: &Mesh, least_width: f64, widest: f64, doors: &[Door]) -> Self {
+    /// The passages up to `widest` meters and the doors of a floor with this triangulation. Joins of `levels` are
+    /// openings themselves.
+    pub fn of(
+        mesh: &Mesh,
+        [least_width, widest]: [f64; 2],
+        doors: &[Door],
+        levels: Option<&Arc<Levels>>,
+    ) -> Self {
         let width = |[a, b]: &[Vector; 2]| (b - a).norm();
         let mut found: Vec<(Narrow, [Vector; 2])> = narrow(mesh, widest.max(least_width))
             .into_iter()
             .map(|passage| (passage, passage.ends(mesh)))
+            .filter(|(_, ends)| !levels.is_some_and(|levels| meets_join(*ends, levels)))
             .collect();
         found.sort_by(|a, b| width(&a.1).total_cmp(&width(&b.1)));
         let is_narrow = |line: &[Vector; 2]| width(line) < least_width - EXACT;
@@ -86,6 +100,7 @@ impl Cuts {
             too_narrow,
             lines: lines.into_iter().chain(long).collect(),
             doors: doors.to_vec(),
+            least_width,
         }
     }
 
@@ -94,10 +109,47 @@ impl Cuts {
         self.doors.get(cut.checked_sub(self.passages.len())?)
     }
 
-    /// The triangulation that they divide.
-    pub fn mesh(&self, areas: &[Area]) -> Result<Mesh, WayError> {
+    /// The triangulation that they divide; of several levels with that in the plane.
+    pub fn mesh(
+        &self,
+        areas: &[Area],
+        levels: Option<&Arc<Levels>>,
+    ) -> Result<(Mesh, Option<Sheets>), WayError> {
         let doors = &self.lines[self.passages.len()..];
-        Mesh::divided(areas, &self.passages, doors)
+        match levels {
+            None => Ok((Mesh::divided(areas, &self.passages, doors)?, None)),
+            Some(levels) => {
+                let closed = (&self.passages[..], doors);
+                let (mesh, sheets) =
+                    Mesh::glued_with(areas, closed, levels.clone(), Joins::Closed)?;
+                Ok((mesh, Some(sheets)))
+            }
+        }
+    }
+
+    /// The closed sides of a floor at their places in the building, those of joins with numbers behind all others.
+    pub fn sides_of(&self, floor: &Floor) -> Vec<Closed> {
+        let Some(sheets) = floor.sheets() else {
+            return self.sides(&floor.mesh);
+        };
+        let mut sides = self.sides(&sheets.mesh);
+        for side in &mut sides {
+            let way = sheets.in_plane(side.beside[0], Vector::zeros());
+            side.ends = side.ends.map(|p| p - way);
+        }
+        let joins = floor.mesh.closed_sides().filter_map(|(ends, mut beside)| {
+            // Of both directions, one number.
+            beside.sort_by_key(|&t| sheets.level[t as usize]);
+            let join = sheets.join_between(beside, ends)?;
+            let [a, b] = sheets.levels.joins()[join].line;
+            if (b - a).norm() < self.least_width - EXACT {
+                return None;
+            }
+            let cut = self.lines.len() + join;
+            Some(Closed { cut, ends, beside })
+        });
+        sides.extend(joins);
+        sides
     }
 
     /// The closed sides of a triangulation.

@@ -23,7 +23,7 @@ impl Located {
         Some(Self {
             triangle,
             at: p,
-            free_distance: rooms.free_distance(triangle, p),
+            free_distance: rooms.free_distance(triangle, rooms.floor.in_building(p)),
         })
     }
 

@@ -4,6 +4,9 @@
 //! triangulation of the floor. What remains connected is a room; a closed side between two rooms belongs to an opening.
 //! Each opening has a path map inside its two rooms, and each goal one inside the rooms from which the way to it
 //! crosses no opening.
+//!
+//! In a building each join is an opening, so that a room lies on one level. Points are those of the building; lengths
+//! on slopes are those that take as long on a floor.
 
 mod crossing;
 mod cuts;
@@ -20,12 +23,15 @@ pub use side::Side;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::WayError;
 use super::floor::{Floor, Mesh};
 use super::paths::{Goal, PathMap, end, points};
 use crate::geometry::Area;
+use crate::levels::Levels;
 use crate::math::{Vector, direction, perpendicular};
 use cuts::Cuts;
 use limits::Limits;
@@ -33,6 +39,9 @@ use opening::{MARGIN, on_both_sides, openings};
 
 /// Wider passages are no openings, meters: the walk through them takes no waiting that counts.
 pub const WIDEST: f64 = 6.0;
+
+/// A way through an opening goes on from a point this far behind it, meters.
+const BEYOND: f64 = 1e-3;
 
 /// The rooms of a floor, and the routes in them.
 #[derive(Debug, Clone)]
@@ -61,22 +70,24 @@ pub struct Rooms {
 
 impl Rooms {
     /// The rooms of a floor, which is given as `areas` that share at most points, for path maps to `goals`. Passages
-    /// narrower than `least_width` meters are closed. Doors divide rooms, and passages up to `widest` meters.
+    /// narrower than `least_width` meters are closed. Doors divide rooms, and passages up to `widest` meters, and the
+    /// joins of `levels`.
     ///
     /// # Errors
-    /// As [`Mesh::new`].
+    /// As [`Mesh::new`], or the floors on both sides of a join differ along it.
     pub fn new(
-        areas: &[Area],
-        least_width: f64,
+        (areas, levels): (&[Area], Option<&Arc<Levels>>),
+        [least_width, widest]: [f64; 2],
         doors: &[Door],
-        widest: f64,
         goals: &[Vec<Goal>],
     ) -> Result<Self, WayError> {
         let open = Mesh::new(areas, 0.0)?;
-        let mut cuts = Cuts::of(&open, least_width, widest, doors);
-        let mesh = cuts.mesh(areas)?;
-        cuts.keep_separating(&cuts.sides(&mesh), &mesh.parts());
-        let floor = Floor::of(cuts.mesh(areas)?, least_width);
+        let mut cuts = Cuts::of(&open, [least_width, widest], doors, levels);
+        let (mesh, sheets) = cuts.mesh(areas, levels)?;
+        let plane = sheets.as_ref().map_or(&mesh, |sheets| &sheets.mesh);
+        cuts.keep_separating(&cuts.sides(plane), &mesh.parts());
+        let (mesh, sheets) = cuts.mesh(areas, levels)?;
+        let floor = Floor::prepared(mesh, sheets, least_width);
         let of_triangle = floor.mesh.parts();
         let openings = openings(&floor, &cuts, &of_triangle)?;
         let count = of_triangle.iter().max().map_or(0, |&most| most + 1);
@@ -141,6 +152,7 @@ impl Rooms {
         let Some(t) = self.floor.locate_or_nearest(None, p) else {
             return f64::INFINITY;
         };
+        let p = self.floor.in_building(p);
         let direct = self.length_to_goal(p, t, goal);
         let sides = self.sides_in(self.room(t)).iter();
         let through = sides.filter_map(|&side| {
@@ -181,6 +193,12 @@ impl Rooms {
     /// The opening of a side.
     pub fn opening(&self, side: Side) -> &Opening {
         &self.openings[side.opening()]
+    }
+
+    /// The straight parts of an opening in the plane, of a join those on one of its levels, meters.
+    pub fn pieces_of<'a>(&'a self, opening: &'a Opening) -> impl Iterator<Item = [Vector; 2]> + 'a {
+        let pieces = opening.pieces().iter();
+        pieces.map(|ends| ends.map(|p| self.floor.in_plane(opening.beside[0], p)))
     }
 
     /// The routes to the opening of a side.
@@ -256,7 +274,14 @@ impl Rooms {
 
     /// The length of the way from `p` in triangle `t` to the opening of a side, inside of the room, meters.
     pub fn length_to(&self, p: Vector, t: u32, side: Side) -> Option<f64> {
-        Some(self.map(side).way(&self.floor, p, t, None)?.length)
+        let length = self.map(side).way(&self.floor, p, t, None)?.length;
+        Some(length * self.effort(t, [p, self.opening(side).middle()]))
+    }
+
+    /// By how much the way from one place to another in the room of triangle `t` takes longer than on a floor.
+    fn effort(&self, t: u32, ends: [Vector; 2]) -> f64 {
+        let sheets = self.floor.sheets();
+        sheets.map_or(1.0, |sheets| sheets.effort(t, ends))
     }
 
     /// As [`length_to`](Self::length_to), and the distance from where that way ends to the middle of the opening,
@@ -266,12 +291,16 @@ impl Rooms {
         let way = map.way(&self.floor, p, t, None)?;
         let aside = |end: Vector| (end - self.opening(side).middle()).norm();
         let aside = end(&self.floor, map, way.next).map_or(0.0, aside);
-        Some([way.length, aside])
+        let effort = self.effort(t, [p, self.opening(side).middle()]);
+        Some([way.length, aside].map(|length| length * effort))
     }
 
     /// The length of the way from `p` in triangle `t` to a goal, if it crosses no opening, meters.
     pub fn length_to_goal(&self, p: Vector, t: u32, goal: usize) -> Option<f64> {
-        Some(self.goals[goal].way(&self.floor, p, t, None)?.length)
+        let map = &self.goals[goal];
+        let way = map.way(&self.floor, p, t, None)?;
+        let end = end(&self.floor, map, way.next).unwrap_or(p);
+        Some(way.length * self.effort(t, [p, end]))
     }
 
     /// The points of the way from `p` in triangle `t` to the opening of a side, or to a goal in the room, meters.
@@ -281,6 +310,12 @@ impl Rooms {
         way.map_or(Vec::new(), |way| {
             points(&self.floor, map, way.next).collect()
         })
+    }
+
+    /// The place a little beyond the opening of a side, for a way that ends at `p` on the opening, in the plane.
+    pub fn beyond(&self, side: Side, p: Vector) -> Vector {
+        let t = self.opening(side).beside[side.beyond()];
+        self.floor.in_plane(t, p + self.ahead(side) * BEYOND)
     }
 
     /// The direction from a side across its opening, of length 1.
@@ -360,7 +395,9 @@ impl Rooms {
             return None;
         }
         let opening = self.opening(side);
-        let t = opening.beside[side.beyond()];
-        Some(map.way(&self.floor, opening.middle(), t, None)?.length)
+        let (t, from) = (opening.beside[side.beyond()], opening.middle());
+        let way = map.way(&self.floor, from, t, None)?;
+        let end = end(&self.floor, map, way.next).unwrap_or(from);
+        Some(way.length * self.effort(t, [from, end]))
     }
 }

@@ -16,7 +16,7 @@ pub const MARGIN: f64 = 0.01;
 /// An opening between two rooms.
 #[derive(Debug, Clone)]
 pub struct Opening {
-    /// Its straight parts, meters.
+    /// Its straight parts, of a building at their places there, meters.
     pub(super) pieces: Vec<[Vector; 2]>,
     /// The rooms on its two sides.
     pub(super) rooms: [u32; 2],
@@ -80,10 +80,31 @@ pub fn on_both_sides([a, b]: [Vector; 2]) -> [Goal; 2] {
     [aside, -aside].map(|aside| Goal::Line([a + aside, b + aside]))
 }
 
+/// Lines beside a closed side, one on each side, in the plane.
+fn beside(floor: &Floor, side: &Closed) -> [Goal; 2] {
+    let [a, b] = side.ends;
+    let is_join = floor
+        .sheets()
+        .is_some_and(|sheets| sheets.join_between(side.beside, side.ends).is_some());
+    if !is_join {
+        return on_both_sides([a, b].map(|p| floor.in_plane(side.beside[0], p)));
+    }
+    let across = perpendicular(direction(b - a)) * BEFORE;
+    side.beside.map(|t| {
+        let inside = floor.mesh.middle(t) - a;
+        let aside = if across.dot(&inside) > 0.0 {
+            across
+        } else {
+            -across
+        };
+        Goal::Line([a, b].map(|p| floor.in_plane(t, p + aside)))
+    })
+}
+
 /// The openings between rooms.
 pub fn openings(floor: &Floor, cuts: &Cuts, room: &[u32]) -> Result<Vec<Opening>, WayError> {
     let mut sides: BTreeMap<(usize, [u32; 2]), Vec<Closed>> = BTreeMap::new();
-    for mut side in cuts.sides(&floor.mesh) {
+    for mut side in cuts.sides_of(floor) {
         let rooms = side.beside.map(|t| room[t as usize]);
         if side.cut < cuts.too_narrow || rooms[0] == rooms[1] {
             continue;
@@ -100,14 +121,14 @@ pub fn openings(floor: &Floor, cuts: &Cuts, room: &[u32]) -> Result<Vec<Opening>
         sides.sort_by(|a, b| length(b).total_cmp(&length(a)));
         let beside = sides[0].beside;
         let pieces: Vec<[Vector; 2]> = sides.iter().map(|side| side.ends).collect();
-        let goals: Vec<Goal> = pieces
+        let goals: Vec<Goal> = sides
             .iter()
-            .flat_map(|&piece| on_both_sides(piece))
+            .flat_map(|side| self::beside(floor, side))
             .collect();
         let door = cuts.door(cut).map(|door| {
             let [a, b] = door.line;
             // People pass from the left to the right of the line.
-            let is_left = side(a, b, floor.mesh.middle(beside[1])) > 0.0;
+            let is_left = side(a, b, floor.plane().middle(beside[1])) > 0.0;
             (door.place, door.one_way.then_some(usize::from(!is_left)))
         });
         Ok(Opening {

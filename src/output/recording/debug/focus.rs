@@ -158,7 +158,7 @@ impl Focus {
         let mut points: Vec<(Point, Rgb)> = Vec::new();
         if let Some(agent) = agent {
             let from = agent.position;
-            let here = |p: [f64; 2]| xy(Vector::from(p) - from);
+            let here = |p: [f64; 2]| xy(agent.drawn(p) - from);
             let [x, y] = xy(from);
             let hidden = agent.hidden.iter();
             lines.extend(hidden.map(|outline| {

@@ -151,7 +151,7 @@ fn hidden_regions(open: &[Open]) -> Data {
 fn routes(open: &[Open]) -> Data {
     let routes = open.iter().filter_map(|agent| {
         let aims = agent.breakdown.way.as_ref()?.corners.iter();
-        let corners = aims.map(|&corner| xy(corner.into()));
+        let corners = aims.map(|&corner| xy(agent.drawn(corner)));
         Some(std::iter::once(xy(agent.position)).chain(corners).collect())
     });
     strips(routes)
@@ -162,12 +162,9 @@ fn walls(open: &[Open]) -> impl Iterator<Item = (Point, Point, Option<Point>)> {
     open.iter().flat_map(|agent| {
         let walls = agent.breakdown.walls.iter();
         walls.map(|term| {
-            let representative = term.representative_point.map(|p| xy(p.into()));
-            (
-                xy(agent.position),
-                xy(term.nearest_point.into()),
-                representative,
-            )
+            let representative = term.representative_point.map(|p| xy(agent.drawn(p)));
+            let nearest = xy(agent.drawn(term.nearest_point));
+            (xy(agent.position), nearest, representative)
         })
     })
 }

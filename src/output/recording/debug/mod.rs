@@ -7,6 +7,7 @@ pub mod layers;
 pub mod moment;
 
 use super::draw::{Point, xy};
+use crate::drawing::Drawing;
 use engine::breakdown::Breakdown;
 use engine::geometry::HiddenRegion;
 use engine::math::Vector;
@@ -94,7 +95,12 @@ pub fn forces_on(simulation: &Simulation, debug: &DebugAgents) -> Vec<(u32, Vec<
 /// An agent with its breakdown.
 pub struct Open {
     pub breakdown: Breakdown,
+    /// Where it is drawn, meters.
     pub position: Vector,
+    /// From the points of the breakdown to where they are drawn, meters: zero on a plane.
+    to_drawing: Vector,
+    /// The name of its level in a building.
+    pub level: Option<String>,
     pub support_radius: f64,
     /// The outlines of P_k, in the order of the breakdown's walls.
     pub hidden: Vec<Vec<Point>>,
@@ -115,8 +121,28 @@ impl Open {
             hidden: hidden.collect(),
             breakdown,
             position,
+            to_drawing: Vector::zeros(),
+            level: None,
             support_radius,
         })
+    }
+
+    /// Moves it to where it is drawn, and the points of its breakdown to their places in the building.
+    pub(in crate::recording) fn draw(&mut self, drawing: &Drawing) {
+        let plane = self.position;
+        self.position = drawing.place(plane);
+        self.to_drawing = drawing.from_building(plane);
+        for point in self.hidden.iter_mut().flatten() {
+            let [x, y] = xy(self.position - plane);
+            *point = [point[0] + x, point[1] + y];
+        }
+        drawing.in_building(&mut self.breakdown);
+        self.level = Some(drawing.level(plane).to_owned());
+    }
+
+    /// Where a point of its breakdown is drawn.
+    fn drawn(&self, p: [f64; 2]) -> Vector {
+        Vector::from(p) + self.to_drawing
     }
 
     /// The weighted sum of one term over the active profiles.

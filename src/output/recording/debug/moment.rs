@@ -18,13 +18,15 @@ pub fn entity(name: &str) -> String {
 /// Logs the table of an agent.
 pub fn log(stream: &RecordingStream, agent: &Open) -> Result<(), Cause> {
     let of = &agent.breakdown;
-    let document = TextDocument::from_markdown(markdown(of));
+    let level = agent.level.as_ref();
+    let on_level = level.map_or(String::new(), |name| format!(" on {name}"));
+    let document = TextDocument::from_markdown(markdown(of, &on_level));
     Ok(stream.log_static(entity(&of.id.to_string()), &document)?)
 }
 
-/// A breakdown in Markdown.
-fn markdown(of: &Breakdown) -> String {
-    let mut text = format!("# Agent {}\n\n## Accelerations, m/s²\n\n", of.id);
+/// A breakdown in Markdown; `level`: on which level of a building.
+fn markdown(of: &Breakdown, level: &str) -> String {
+    let mut text = format!("# Agent {}{level}\n\n## Accelerations, m/s²\n\n", of.id);
     text += &accelerations(of);
     text += "\n## State\n\n| quantity | value |\n|---|---:|\n";
     for (quantity, value) in state(of) {

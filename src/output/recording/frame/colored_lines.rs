@@ -5,10 +5,12 @@ use std::sync::LazyLock;
 
 use rerun::{LineStrips2D, RecordingStream, Scalars};
 
+use crate::drawing::Drawing;
 use crate::recording::draw::{Point, color, log_series, px, xy};
 use crate::recording::error::Cause;
 use analysis::wall_forces::Outlines;
 use engine::forces::legs;
+use engine::math::Vector;
 use engine::simulation::Simulation;
 use figures::colors::{ColorMap, LEAN, Rgb, WAIT, WALL_FORCE};
 
@@ -65,9 +67,14 @@ pub static LEANS: ColoredLines = ColoredLines {
 };
 
 /// The parts of walls with a force on them in an evaluated frame.
-pub fn wall_forces(outlines: &Outlines, simulation: &Simulation, body_mass: f64) -> Vec<Part> {
+pub fn wall_forces(
+    outlines: &Outlines,
+    (simulation, body_mass): (&Simulation, f64),
+    drawing: Option<&Drawing>,
+) -> Vec<Part> {
     let pressed = outlines.pressed(simulation, body_mass);
-    let parts = pressed.map(|(ends, force)| (ends.map(xy), force as f32));
+    let place = |p| xy(drawing.map_or(p, |drawing| drawing.place(p)));
+    let parts = pressed.map(|(ends, force)| (ends.map(place), force as f32));
     parts.collect()
 }
 
@@ -78,26 +85,32 @@ pub fn have_legs(simulation: &Simulation) -> bool {
 }
 
 /// The leans of all agents that have legs; `None` if no profile has legs.
-pub fn leans(simulation: &Simulation) -> Option<Vec<Part>> {
+pub fn leans(simulation: &Simulation, drawing: Option<&Drawing>) -> Option<Vec<Part>> {
     let agents = simulation.frame().agents;
     if !have_legs(simulation) {
         return None;
     }
     let part = |i: usize| {
-        let ends = [legs::position(agents, i)?, agents.position[i]];
-        Some((ends.map(xy), legs::lean(agents, i).norm() as f32))
+        let body = agents.position[i];
+        let shift = drawing.map_or(Vector::zeros(), |drawing| drawing.place(body) - body);
+        let ends = [legs::position(agents, i)?, body];
+        Some((
+            ends.map(|p| xy(p + shift)),
+            legs::lean(agents, i).norm() as f32,
+        ))
     };
     Some(agents.present().filter_map(part).collect())
 }
 
 /// The openings before which agents wait; `None` if they do not choose quickest routes.
-pub fn waits(simulation: &Simulation) -> Option<Vec<Part>> {
+pub fn waits(simulation: &Simulation, drawing: Option<&Drawing>) -> Option<Vec<Part>> {
     let rooms = simulation.scene().rooms()?;
+    let drawn = |p| xy(drawing.map_or(p, |drawing| drawing.place(p)));
     let all = rooms.openings().iter().zip(simulation.waits());
     let waits = all.filter(|(_, wait)| *wait > 0.0);
     let parts = waits.flat_map(|(opening, wait)| {
-        let pieces = opening.pieces().iter();
-        pieces.map(move |ends| (ends.map(xy), wait as f32))
+        let pieces = rooms.pieces_of(opening);
+        pieces.map(move |ends| (ends.map(drawn), wait as f32))
     });
     Some(parts.collect())
 }

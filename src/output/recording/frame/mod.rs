@@ -8,7 +8,8 @@ pub mod stats;
 use rerun::{EntityPath, RecordingStream};
 
 use super::debug::{DebugAgents, Open};
-use super::draw::{Point, xy};
+use super::draw::{Place, Point, xy, xyz};
+use crate::drawing::Drawing;
 use crate::events::Line;
 use crate::scenery::stage_color;
 use colored_lines::{ColoredLines, LEANS, Part, WAITS};
@@ -29,6 +30,8 @@ pub struct Snapshot {
     pub ms_per_frame: Option<f64>,
     pub ids: Vec<u32>,
     pub positions: Vec<Point>,
+    /// In a building: the numbers of their levels, and their places there.
+    pub on_levels: Vec<(usize, Place)>,
     /// NaN if unknown.
     pub velocities: Vec<Point>,
     pub radii: Vec<f32>,
@@ -59,8 +62,13 @@ pub struct Snapshot {
 
 impl Snapshot {
     /// The crowd of the current frame, with the debug agents and the followed ones.
-    pub fn of(simulation: &Simulation, debug: &DebugAgents, followed: &[Option<u32>]) -> Self {
+    pub fn of(
+        simulation: &Simulation,
+        (debug, followed): (&DebugAgents, &[Option<u32>]),
+        drawing: Option<&Drawing>,
+    ) -> Self {
         let frame = simulation.frame();
+        let drawn = |p| xy(drawing.map_or(p, |drawing| drawing.place(p)));
         let (agents, fields) = (frame.agents, frame.fields);
         let present: Vec<usize> = agents.present().collect();
         let vectors = |values: &[Vector]| present.iter().map(|&i| xy(values[i])).collect();
@@ -70,20 +78,32 @@ impl Snapshot {
         let trips = &agents.trip;
         let on_trips = present.iter().copied().filter(|_| !trips.is_empty());
         let stages = on_trips.map(|i| stage_color(trips.get(i).and_then(Option::as_ref)));
-        let open = debug.open(simulation, followed);
+        let mut open = debug.open(simulation, followed);
+        if let Some(drawing) = drawing {
+            open.iter_mut().for_each(|agent| agent.draw(drawing));
+        }
+        let levels = simulation.scene().levels.as_deref().into_iter();
+        let on_levels = levels.flat_map(|levels| {
+            let places = present.iter().map(|&i| agents.position[i]);
+            places.map(|p| {
+                let number = levels.level(p);
+                (number, xyz(&levels.all()[number], levels.in_building(p)))
+            })
+        });
         let place = |id: u32| {
             open.binary_search_by_key(&id, |agent| agent.breakdown.id)
                 .ok()
         };
-        let waits = colored_lines::waits(simulation).map(|parts| (&WAITS, parts));
-        let leans = colored_lines::leans(simulation).map(|parts| (&LEANS, parts));
+        let waits = colored_lines::waits(simulation, drawing).map(|parts| (&WAITS, parts));
+        let leans = colored_lines::leans(simulation, drawing).map(|parts| (&LEANS, parts));
         let lines = [waits, leans];
         Self {
             followed: followed.iter().map(|id| id.and_then(place)).collect(),
             frame: frame.clock.frame().cast_signed(),
             time: frame.clock.time(),
             ids: present.iter().map(|&i| agents.id[i]).collect(),
-            positions: vectors(&agents.position),
+            on_levels: on_levels.collect(),
+            positions: present.iter().map(|&i| drawn(agents.position[i])).collect(),
             velocities: vectors(&agents.velocity),
             radii: numbers(&agents.radius),
             masses: numbers(&agents.mass),

@@ -6,12 +6,13 @@ mod views;
 use rerun::EntityPath;
 use rerun::blueprint::components::{LoopMode, PanelState, PlayState};
 use rerun::blueprint::{
-    Blueprint, BlueprintPanel, ContainerLike, Horizontal, SelectionPanel, Tabs, TextDocumentView,
-    TextLogView, TimePanel, TimeSeriesView, Vertical,
+    Blueprint, BlueprintPanel, ContainerLike, Horizontal, SelectionPanel, Spatial3DView, Tabs,
+    TextDocumentView, TextLogView, TimePanel, TimeSeriesView, Vertical,
 };
 use rerun::external::re_log_types::TimeInt;
 
 use super::arrangement::Arrangement;
+use super::building;
 use super::debug::{focus, moment};
 use super::frame::colored_lines::ColoredLines;
 use super::frame::{SIM_TIME, crowd, events, stats};
@@ -64,6 +65,8 @@ pub struct Content {
     pub fields: Vec<EntityPath>,
     /// The layers of colored lines.
     pub lines: Vec<&'static ColoredLines>,
+    /// Whether it is a building.
+    pub has_levels: bool,
     /// Whether the walkable area has an outside.
     pub has_outside: bool,
     /// The names of the followed agents.
@@ -78,6 +81,7 @@ impl Content {
             has_journeys: false,
             has_stages: false,
             has_waiting: false,
+            has_levels: false,
             fields: Vec::new(),
             lines: Vec::new(),
             has_outside,
@@ -140,6 +144,12 @@ fn crowds(
             .colored_by(crowd::STAGE_COLORS)
             .add(properties, &options.view);
         beside = Tabs::new([stage, beside]).into();
+    }
+    if content.has_levels {
+        let building = Spatial3DView::new("Building")
+            .with_origin(format!("/{}", building::ENTITY))
+            .with_contents([format!("+ /{}/**", building::ENTITY)]);
+        beside = Tabs::new([building.into(), beside]).into();
     }
     match arrangement {
         Arrangement::Wide => Vertical::new([density, beside]).into(),

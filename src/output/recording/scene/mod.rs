@@ -12,8 +12,9 @@ use rerun::{Points2D, RecordingStream};
 use super::draw::{color, log_lines, px, xy, y_up};
 use super::error::Cause;
 use super::options::RecordingOptions;
+use crate::drawing::{self, Drawing};
 use crate::labels;
-use crate::scenery::{self, closed};
+use crate::scenery::{self, GoalOf, closed};
 use engine::agents::Agents;
 use engine::geometry::Polygon;
 use engine::math::bounds;
@@ -25,19 +26,27 @@ use names::Names;
 
 const WALL: Rgb = [214, 214, 222];
 const GOAL: Rgb = [95, 211, 120];
+const LEVEL: Rgb = [200, 200, 200];
+const STEP: Rgb = [70, 72, 84];
+const JOIN: Rgb = [160, 140, 220];
 
 /// Logs everything that stays constant in a run.
 pub fn log(
     stream: &RecordingStream,
     simulation: &Simulation,
+    (scene, drawing): (&Scene, Option<&Drawing>),
     options: &RecordingOptions,
 ) -> Result<(), Cause> {
-    let (scene, agents) = (simulation.scene(), simulation.frame().agents);
+    let agents = simulation.frame().agents;
+    let goals = drawing::goals(scenery::goals(simulation.scene(), agents), drawing);
     let mut names = Names::of_scene(&options.view, scene);
     places::log(stream, scene, &mut names)?;
     log_walls(stream, scene.walls.obstacles())?;
     log_period(stream, scene, agents)?;
-    log_goals(stream, (scene, agents), &mut names)?;
+    log_goals(stream, (scene, &goals), &mut names)?;
+    if let Some(drawing) = drawing {
+        log_levels(stream, drawing, &mut names)?;
+    }
     routes::log(stream, scene)?;
     markers::log(stream, scene, options, &mut names)?;
     names.log(stream)
@@ -67,16 +76,38 @@ fn log_period(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Resul
     log_lines(stream, "period", (GOAL, 0.75, 6.0), ends)
 }
 
+/// Logs the steps of stairs and the joins of levels.
+fn log_levels(stream: &RecordingStream, drawing: &Drawing, names: &mut Names) -> Result<(), Cause> {
+    let steps = drawing.steps(0.0).into_iter().map(|line| line.to_vec());
+    log_lines(stream, "steps", (STEP, 0.25, -2.0), steps)?;
+    for (name, [top, bottom]) in drawing.names() {
+        names.add(
+            "names",
+            1,
+            name,
+            (LEVEL, &[(top, [0, 1]), (bottom, [0, -1])]),
+        );
+    }
+    let joins = drawing.joins();
+    let lines = joins.iter().map(|way| way.line.to_vec());
+    log_lines(stream, "joins", (JOIN, 1.5, 5.5), lines)?;
+    for way in &joins {
+        let spots = labels::around(&way.line, false);
+        let name = format!("to {}", way.to);
+        names.add("joins/names", joins.len(), &name, (JOIN, &spots));
+    }
+    Ok(())
+}
+
 fn log_goals(
     stream: &RecordingStream,
-    (scene, agents): (&Scene, &Agents),
+    (scene, goals): (&Scene, &[GoalOf]),
     names: &mut Names,
 ) -> Result<(), Cause> {
-    let goals = scenery::goals(scene, agents);
     if goals.is_empty() {
         return Ok(());
     }
-    for (text, spots) in labels::of_goals(scene, &goals) {
+    for (text, spots) in labels::of_goals(scene, goals) {
         names.add("goals/names", goals.len(), &text, (GOAL, &spots));
     }
     let points = Points2D::new(goals.iter().map(|(p, _)| xy(*p)))

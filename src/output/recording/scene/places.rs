@@ -45,7 +45,7 @@ pub fn log(stream: &RecordingStream, scene: &Scene, names: &mut Names) -> Result
     log_lines(stream, "entrances", (ENTRANCE, 2.0, 4.0), entrances)?;
     log_spots(stream, scene)?;
     let zones = scene.journeys.zones.iter().flat_map(|zone| {
-        let lines = scenery::hatching(&zone.area, HATCHING);
+        let lines = scenery::hatching(&zone.area, scenery::across_zones(), HATCHING);
         let hatching = lines.into_iter().map(|line| line.to_vec());
         std::iter::once(scenery::closed(zone.area.points())).chain(hatching)
     });

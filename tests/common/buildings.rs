@@ -1,0 +1,79 @@
+//! Houses of two floors, and runs of buildings.
+
+use sandbox::engine::math::Vector;
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::Scenario;
+use serde_json::{Value, json};
+
+/// A house of two floors with a flight of stairs, in which people upstairs walk to the street.
+pub fn house() -> Value {
+    json!({
+        "profile": "steer+sph",
+        "duration_secs": 120,
+        "levels": [
+            {"name": "ground", "elevation": 0, "walkable_area": [[[[0, 0], [10, 0], [10, 6], [0, 6]]]]},
+            {"name": "stairs", "kind": "stairs", "walkable_area": [[[[10, 0], [14, 0], [14, 1.5], [10, 1.5]]]]},
+            {"name": "upper", "elevation": 2.5, "walkable_area": [[[[14, 0], [20, 0], [20, 6], [14, 6]]]]},
+        ],
+        "joins": [
+            {"levels": ["ground", "stairs"], "line": [[10, 0], [10, 1.5]]},
+            {"levels": ["stairs", "upper"], "line": [[14, 0], [14, 1.5]]},
+        ],
+        "crowds": [{"name": "people", "level": "upper", "area": [[14, 0], [20, 0], [20, 6], [14, 6]], "number": 40}],
+        "exits": [{"name": "street", "level": "ground", "line": [[0, 2], [0, 3.2]]}],
+        "stop": {"when_empty": true},
+    })
+}
+
+/// A house whose upper floor lies above the ground floor: the stairs turn back over it by a landing. The hall goes on
+/// beside and behind the stairs.
+pub fn folded() -> Value {
+    json!({
+        "profile": "sph",
+        "duration_secs": 120,
+        "levels": [
+            {"name": "ground", "elevation": 0,
+             "walkable_area": [[[[0, 0], [10, 0], [10, 6], [0, 6]], [[4, 2], [8, 2], [8, 3.5], [4, 3.5]]]]},
+            {"name": "up", "kind": "stairs", "walkable_area": [[[[4, 2], [8, 2], [8, 3.5], [4, 3.5]]]]},
+            {"name": "upper", "elevation": 3, "walkable_area": [[[[8, 0], [12, 0], [12, 6], [8, 6]]]]},
+        ],
+        "joins": [
+            {"levels": ["ground", "up"], "line": [[4, 2], [4, 3.5]]},
+            {"levels": ["up", "upper"], "line": [[8, 2], [8, 3.5]]},
+        ],
+        "crowds": [{"level": "upper", "area": [[8, 0], [12, 0], [12, 6], [8, 6]], "number": 30}],
+        "exits": [{"name": "street", "level": "ground", "line": [[10, 4], [10, 5.2]]}],
+        "stop": {"when_empty": true},
+    })
+}
+
+pub fn read(document: &Value) -> Scenario {
+    Scenario::parse(&document.to_string(), "house.json", &[]).unwrap()
+}
+
+pub fn refused(document: &Value) -> String {
+    let problem = Scenario::parse(&document.to_string(), "house.json", &[]);
+    problem.unwrap_err().to_string()
+}
+
+/// Runs to the end; calls `see` with the id, the place in the building and the name of the level of everybody.
+pub fn each(scenario: &Scenario, mut see: impl FnMut(u32, Vector, &str)) -> usize {
+    let levels = scenario.scene.levels.clone().unwrap();
+    let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
+    for _ in 0..15_000 {
+        simulation.evaluate().unwrap();
+        let agents = simulation.frame().agents;
+        for (&id, &p) in agents.id.iter().zip(&agents.position) {
+            see(
+                id,
+                levels.in_building(p),
+                &levels.all()[levels.level(p)].name,
+            );
+        }
+        if agents.is_empty() {
+            break;
+        }
+        simulation.integrate().unwrap();
+    }
+    simulation.outcome().arrivals.len()
+}
