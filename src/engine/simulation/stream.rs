@@ -64,7 +64,7 @@ impl Stream {
         for first in (0..bins).step_by(STRETCH) {
             let counts = &self.nearer[first..=(first + STRETCH).min(bins)];
             let pairs = counts.iter().zip(&counts[1..]);
-            // In most stretches nobody comes: no branch per bin.
+            // Most stretches are empty: no branch per bin.
             if !pairs.fold(false, |comes, (before, next)| comes | (next > before)) {
                 continue;
             }

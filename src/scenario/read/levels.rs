@@ -102,8 +102,8 @@ pub fn side_by_side(document: &Value) -> Result<Option<SideBySide>, Problem> {
     }))
 }
 
-/// Refuses doors on joins, which those who come from the other level would not meet, and exits and entrances at joins,
-/// whose floors behind would lead around them.
+/// Refuses doors on joins, which would not hold up people from the other level, and exits and entrances at joins, which
+/// people could go around over the floor behind.
 fn check_lines(document: &Value, building: &Building) -> Result<(), Problem> {
     for (list, ends, fix) in [
         (

@@ -38,7 +38,7 @@ impl Levels {
         }
     }
 
-    /// Whether somebody on the level `name` is read.
+    /// Whether people on the level `name` are read.
     pub fn includes(&mut self, name: &str) -> bool {
         if !self.names.contains(name) {
             self.names.insert(name.to_owned());
