@@ -82,7 +82,7 @@ fn by_flight(document: &Value) -> ([usize; 2], f64) {
             _ => false,
         };
     });
-    assert_eq!(left, frames.len(), "nobody is lost");
+    assert_eq!(left, frames.len(), "all people leave");
     (
         on.map(|ids| ids.len()),
         f64::from(*frames.values().max().unwrap()) * 0.02,
@@ -134,6 +134,52 @@ fn doors_close_flights_and_let_people_pass_one_way() {
         said.contains("doors[0].line: lies on the join of `a` and `upper`: draw it 10 cm"),
         "{said}"
     );
+}
+
+#[test]
+fn routes_turn_around_the_end_of_the_wall_between_two_flights_that_touch() {
+    // From the end of this wall, the shortest way leads along it, and straight on to the exit.
+    let floor = |x: [f64; 2], y: [f64; 2]| {
+        json!([[[[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]]]])
+    };
+    let (left, right) = ([0.0, 1.5], [1.5, 3.0]);
+    let places = [
+        ("down", 0.75, -2.0),
+        ("down", 1.1, -0.7),
+        ("upper", 0.4, -6.0),
+        ("upper", 1.2, -4.5),
+    ];
+    let agents = places.map(|(level, x, y)| json!({"level": level, "position": [x, y]}));
+    let scenario = read(&json!({
+        "profile": "sph",
+        "duration_secs": 60,
+        "levels": [
+            {"name": "upper", "elevation": 3, "walkable_area": floor(left, [-8.0, -4.0])},
+            {"name": "down", "kind": "stairs", "walkable_area": floor(left, [-4.0, 0.0])},
+            {"name": "landing", "elevation": 1.5, "walkable_area": floor([0.0, 3.0], [0.0, 1.5])},
+            {"name": "back", "kind": "stairs", "walkable_area": floor(right, [-4.0, 0.0])},
+            {"name": "lower", "elevation": 0, "walkable_area": floor([-3.0, 3.0], [-8.0, -4.0])},
+        ],
+        "joins": [
+            {"levels": ["upper", "down"], "line": [[0, -4], [1.5, -4]]},
+            {"levels": ["down", "landing"], "line": [[0, 0], [1.5, 0]]},
+            {"levels": ["landing", "back"], "line": [[1.5, 0], [3, 0]]},
+            {"levels": ["back", "lower"], "line": [[1.5, -4], [3, -4]]},
+        ],
+        "exits": [{"name": "end", "level": "lower", "line": [[-1, -8], [2.5, -8]]}],
+        "agents": agents,
+        "stop": {"when_empty": true},
+    }));
+    let routes = scenario.scene.routes.clone().unwrap();
+    for (agent, (level, x, y)) in scenario.scene.agents.iter().zip(places) {
+        let own = routes.length(agent.position, Destination::Place(0));
+        let expected = (vector(1.5, 0.0) - vector(x, y)).norm() + 8.0;
+        assert!(
+            (own - expected).abs() < 1e-6,
+            "({x}, {y}) on {level}: {own}, {expected}"
+        );
+    }
+    assert_eq!(each(&scenario, |_, _, _| {}), 4);
 }
 
 /// A tower of random storeys, all above each other, with a staircase at its east side: from each storey a flight leads

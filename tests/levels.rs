@@ -31,6 +31,7 @@ fn flat(elevation: f64, floor: &[Sides]) -> Level {
         elevation,
         rise: Vector::zeros(),
         speed_factors: [1.0; 2],
+        carries: Vector::zeros(),
         floor: FloorPlan::walkable(&rings).unwrap().walkable,
     }
 }

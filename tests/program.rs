@@ -5,6 +5,7 @@ mod common;
 mod accuracy;
 mod backlogs;
 mod bench;
+mod building_levels;
 mod building_runs;
 mod byte_order_marks;
 mod calibrate;

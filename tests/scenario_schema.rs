@@ -132,9 +132,11 @@ fn the_whole_documents_have_every_key_except_those_of_trajectory_files() {
         ".behaviour_seed", // former names
         "FromData.at_secs",
         "FromData.fps",
+        "FromData.level",
         "FromData.trajectory",
         "FromData.unit",
         "FromData.until_secs",
+        "FromData.uses_stairs", // a key of buildings, which `from` does not start
         "Jitter.to_secs",
         "SpeedByDensity.to_secs",
         "Wave.to_secs",

@@ -103,8 +103,9 @@ fn the_keys_of_nested_objects_are_documented() {
         ("periodic", "axis, length, from?"),
         (
             "from",
-            "at_secs?, counted?, fps?, goal?, journey?, mass?, mean_density?, motivation?, name?, people?, \
-             preferred_speed?, premovement_secs?, profile?, radius?, remove_within?, trajectory?, unit?, until_secs?",
+            "at_secs?, counted?, fps?, goal?, journey?, level?, mass?, mean_density?, motivation?, name?, people?, \
+             preferred_speed?, premovement_secs?, profile?, radius?, remove_within?, trajectory?, unit?, until_secs?, \
+             uses_stairs?",
         ),
         ("stop", "idle_secs?, when_empty?"),
         (

@@ -88,10 +88,19 @@ const GOAL: u32 = u32::MAX - 1;
 impl WayField {
     /// The routes to a destination that has a path map.
     pub fn new(routes: &Routes, to: Destination, grid: Grid) -> Self {
+        Self::drawn(routes, to, grid, Some)
+    }
+
+    /// The same of a floor that is drawn elsewhere: `place` has the place on it of each point, if there is one.
+    pub fn drawn(
+        routes: &Routes,
+        to: Destination,
+        grid: Grid,
+        place: impl Fn(Vector) -> Option<Vector> + Sync,
+    ) -> Self {
         let from = |k: usize| {
-            let p = grid.center(k);
-            let on_floor = routes.floor.locate(p).is_some();
-            let way = on_floor.then(|| routes.open_way(p, to)).flatten();
+            let on_floor = place(grid.center(k)).filter(|&p| routes.floor.locate(p).is_some());
+            let way = on_floor.and_then(|p| routes.open_way(p, to));
             (way.map(|way| way.length), way.map_or(NOTHING, number))
         };
         let cells = (0..grid.len()).into_par_iter().with_min_len(1024);

@@ -13,8 +13,8 @@ use super::values::{id, is_page, recording, seconds};
 use super::watch::Progress;
 use super::{memory, moment, output};
 use ::output::document::{Block, Document, Findings, Names};
-use ::output::drawing::Drawing;
 use ::output::html::facts;
+use ::output::over_joins;
 use ::output::recording::check_enabled;
 use ::output::table::Table;
 use engine::breakdown::Breakdown;
@@ -137,8 +137,8 @@ fn level(simulation: &Simulation, i: usize) -> Option<&str> {
 fn breakdown(simulation: &Simulation, id: u32, i: usize) -> Result<Breakdown, Failure> {
     let mut breakdown = Breakdown::of(simulation, i)
         .ok_or_else(|| Failure::Output(format!("--agent {id}: the frame has no densities")))?;
-    if let Some(drawing) = Drawing::of(simulation.scene()) {
-        drawing.in_building(&mut breakdown);
+    if let Some(levels) = &simulation.scene().levels {
+        over_joins::in_building(levels, &mut breakdown);
     }
     Ok(breakdown)
 }

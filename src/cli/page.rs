@@ -87,14 +87,13 @@ fn open(options: &PageOptions, outputs: &mut Outputs) -> Result<Run, Failure> {
         let given = [
             ("--geometry", options.geometry.is_some()),
             ("--unit", options.tracks.unit.is_some()),
-            ("--level", options.tracks.level.is_some()),
             ("--trajectory-fps", options.trajectory_fps.is_some()),
         ];
         if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
             let problem = format!("{option} is for trajectory files, not for recordings");
             return Err(Failure::Input(problem));
         }
-        return recorded::open(path);
+        return recorded::open(path, options.tracks.level.as_deref());
     }
     if options.page_viewer.is_some() {
         let problem = "--page-viewer is for recordings: the Rerun viewer shows no trajectory files";

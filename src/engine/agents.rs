@@ -320,19 +320,20 @@ impl Agents {
 
     /// Moves agents that have walked across a join to the level beyond, where they look for their way again.
     pub fn change_levels(&mut self, levels: &Levels) {
-        for (i, position) in self.position.iter_mut().enumerate() {
-            let Some(way) = levels.passed(*position) else {
-                continue;
-            };
-            for states in &mut self.states {
-                states.shift(i, way);
-            }
-            *position += way;
-            if let Some(route) = self.route.get_mut(i) {
-                *route = None;
-                self.lacks_routes = true;
+        for i in 0..self.len() {
+            if let Some(way) = levels.passed(self.position[i]) {
+                self.shift(i, way);
             }
         }
+    }
+
+    /// Moves agent `i` by a way that others do not see, to another level, where it looks for its way again.
+    pub fn shift(&mut self, i: usize, way: Vector) {
+        for states in &mut self.states {
+            states.shift(i, way);
+        }
+        self.position[i] += way;
+        self.forget_route(i);
     }
 
     /// Whether all agents always walk at the scene's preferred speed.

@@ -16,7 +16,7 @@ use crate::frame::Fields;
 use crate::geometry::Walls;
 use crate::limits::{FARTHEST, HIGHEST_DENSITY, STRONGEST};
 use crate::math::Vector;
-use crate::neighbors::{BLOCK, ClusterBlock, Neighbors, TASK};
+use crate::neighbors::{BLOCK, ClusterBlock, Neighbors};
 use crate::pairs::prelude::*;
 use crate::pairs::{
     Bodies, Columns, Lanes, PairSum, Real, Simd, add_pairs, dispatch, level, load, splat, spread,
@@ -220,6 +220,8 @@ pub struct Input<'a, P> {
     pub parameters: P,
     /// Seconds since the moving average was last stored.
     pub time_step: f64,
+    /// The fewest blocks per parallel task.
+    pub task: usize,
 }
 
 impl<'a, P: Fn(u16) -> &'a SphParameters + Sync> Input<'a, P> {
@@ -238,7 +240,7 @@ impl<'a, P: Fn(u16) -> &'a SphParameters + Sync> Input<'a, P> {
         );
         blocks
             .into_par_iter()
-            .with_min_len(TASK)
+            .with_min_len(self.task)
             .enumerate()
             .for_each(|(b, block)| {
                 let (density, from_walls, mean, rest, pressure, gradient, volume, packed) = block;

@@ -21,6 +21,11 @@ const GAP: f64 = 25.0;
 /// The farthest that anybody may see, meters: the floors behind exits reach up to 7 m into the gap between two levels.
 pub const FARTHEST: f64 = 17.0;
 
+/// The speed of a person on a floor for whom escalators are compared with other ways, m/s (Weidmann 1993).
+const USUAL_SPEED: f64 = 1.34;
+/// Ways over a level take at most as long as at this part of the speed on a floor.
+const SLOWEST: f64 = 0.01;
+
 /// A level: a plane that may slope.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
@@ -35,6 +40,8 @@ pub struct Level {
     /// The preferred speed of those who walk up and of those who walk down is multiplied by this. It is that along the
     /// slope.
     pub speed_factors: [f64; 2],
+    /// The velocity at which an escalator carries people, seen from above, m/s.
+    pub carries: Vector,
     /// Where people walk on it, at its place in the building.
     pub floor: Vec<Area>,
 }
@@ -62,6 +69,13 @@ impl Level {
             _ => up,
         };
         factor / (1.0 + climb * climb).sqrt()
+    }
+
+    /// The speed of people who go toward `heading`, a unit vector, over that on a floor: their own, and that of an
+    /// escalator.
+    pub fn progress(&self, heading: Vector) -> f64 {
+        let carried = self.carries.dot(&heading) / USUAL_SPEED;
+        (self.speed_factor(heading) + carried).max(SLOWEST)
     }
 }
 
@@ -194,6 +208,17 @@ impl Levels {
     /// The preferred speed of somebody at `p` who walks toward `heading`, a unit vector, is multiplied by this.
     pub fn speed_factor(&self, p: Vector, heading: Vector) -> f64 {
         self.levels[self.level(p)].speed_factor(heading)
+    }
+
+    /// Whether there are escalators.
+    pub fn carry(&self) -> bool {
+        let mut levels = self.levels.iter();
+        levels.any(|level| level.carries != Vector::zeros())
+    }
+
+    /// The velocity at which somebody at `p` is carried, m/s.
+    pub fn carries(&self, p: Vector) -> Vector {
+        self.levels[self.level(p)].carries
     }
 
     /// The rectangle around all levels, given by its lower left and upper right corner, meters.

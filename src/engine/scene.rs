@@ -391,6 +391,8 @@ impl Scene {
             && self.levels.is_none();
         let (drift, margin) = match self.neighbor_lists {
             ListPolicy::Complete if follow => (FOLLOWED + ahead, 0.5 * SKIN + ahead),
+            // On levels agents are sorted in every frame.
+            ListPolicy::Complete if self.levels.is_some() => (ahead, ahead),
             ListPolicy::Complete => (0.5 * SKIN + ahead, 0.5 * SKIN + ahead),
             ListPolicy::Coarse => {
                 let frames = f64::from(self.clock.coarse_every());

@@ -55,21 +55,20 @@ impl Egress {
         }
     }
 
-    /// The people in trajectories: they leave when they are last seen. Those in the last frame have not left.
-    pub fn of_tracks(tracks: &Tracks) -> Self {
-        let last = tracks.frames.last().copied().unwrap_or_default();
+    /// The people in trajectories: they leave when they are last seen. Those in the last frame of `all`, which have the
+    /// people of all levels, have not left.
+    pub fn of_tracks(tracks: &Tracks, all: &Tracks) -> Self {
+        let until = all.frames.last().map_or(0.0, |&last| all.time(last));
         let people = 0..tracks.ids.len();
-        let ends =
-            people.filter_map(|p| Some(tracks.frame_of(*tracks.rows_of(p).last()? as usize)));
-        let mut ends: Vec<i64> = ends.collect();
-        let entered = ends.len() as u32;
-        ends.retain(|&end| end < last);
-        ends.sort_unstable();
-        let times = ends.into_iter().map(|end| tracks.time(end)).collect();
+        let ends = people.map(|p| tracks.times_of(p)[1]);
+        let mut times: Vec<f64> = ends.collect();
+        let entered = times.len() as u32;
+        times.retain(|&end| end < until - tracks.rounding());
+        times.sort_by(f64::total_cmp);
         Self {
             entered,
             exits: vec![("last seen".to_owned(), times)],
-            until: tracks.time(last),
+            until,
         }
     }
 

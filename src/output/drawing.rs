@@ -4,18 +4,19 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use crate::over_joins::on_levels;
 use crate::scenery::{GoalOf, hatching};
 use engine::agents::NewAgent;
-use engine::breakdown::Breakdown;
 use engine::geometry::{Area, Polygon, Walls};
-use engine::journeys::Kind;
-use engine::levels::{Join, Level, Levels};
+use engine::journeys::{Kind, Zone};
+use engine::levels::{Level, Levels};
 use engine::math::{Vector, bounds, direction};
 use engine::routes::Goal as WayGoal;
 use engine::scene::{Goal, Region, Scene};
-use scenario::Scenario;
 use scenario::floor_plan::Label;
 use scenario::measurements::Observed;
+use scenario::quote::shown;
+use scenario::{Scenario, suggestion};
 
 /// The distance between levels, as a part of the width of the widest, and at least, meters: room for their names.
 const APART: f64 = 0.06;
@@ -26,6 +27,8 @@ const ASPECT: f64 = 1.6;
 const MARGIN: f64 = 1.5;
 /// Of a drawing of one level, the others are so far away, meters.
 const AWAY: f64 = 1e5;
+/// Places this near to the rectangle around a level are on it, meters.
+const AT_EDGE: f64 = 1e-6;
 /// The width of a step, meters.
 const TREAD: f64 = 0.3;
 
@@ -65,6 +68,26 @@ impl Drawing {
         })
     }
 
+    /// The drawing of all levels of a scenario, or of that of this name; `None` if it is no building.
+    ///
+    /// # Errors
+    /// There is no such level.
+    pub fn named(scenario: &Scenario, name: Option<&str>) -> Result<Option<Self>, String> {
+        let Some(name) = name else {
+            return Ok(Self::of(&scenario.scene));
+        };
+        let of_scene = scenario.scene.levels.as_ref();
+        let levels = of_scene.ok_or("it is for buildings, and this scenario has no `levels`")?;
+        let names = || levels.all().iter().map(|level| level.name.as_str());
+        let number = names().position(|own| own == name).ok_or_else(|| {
+            let near = suggestion(name, names());
+            let all: Vec<String> = names().map(|name| format!("`{}`", shown(name))).collect();
+            let (name, all) = (shown(name), all.join(", "));
+            format!("there is no level named `{name}`{near}; there are {all}")
+        })?;
+        Ok(Some(Self::of_level(levels.clone(), number)))
+    }
+
     /// The drawing of one level, by its number.
     pub fn of_level(levels: Arc<Levels>, number: usize) -> Self {
         let mut ways = vec![Vector::repeat(AWAY); levels.all().len()];
@@ -82,52 +105,55 @@ impl Drawing {
         self.levels.in_building(p) + self.ways[self.levels.level(p)]
     }
 
+    /// The place of the engine's plane that is drawn at `p`; `None` between the levels.
+    pub fn in_plane(&self, p: Vector) -> Option<Vector> {
+        self.shown_levels().find_map(|(number, level, way)| {
+            let [low, high] = level.corners();
+            let at = p - way;
+            let outside = (low - at).sup(&(at - high)).max();
+            let is_there = outside < AT_EDGE;
+            is_there.then(|| at + self.levels.way(number as i32))
+        })
+    }
+
+    /// The way from the building to the plane on the only level that it shows, meters.
+    pub fn to_plane(&self) -> Option<Vector> {
+        Some(self.levels.way(self.only? as i32))
+    }
+
+    /// Whether the level of a place of the plane is shown.
+    pub fn shows(&self, p: Vector) -> bool {
+        self.is_shown(self.levels.level(p))
+    }
+
+    /// The way from the building to the drawing on a level, by its number, meters.
+    pub fn way(&self, level: usize) -> Option<Vector> {
+        self.ways.get(level).copied()
+    }
+
+    /// Where a line of the plane is drawn that goes on over joins, as it is seen from its first point: its parts on the
+    /// levels that are shown.
+    pub fn parts(&self, line: &[Vector]) -> Vec<Vec<Vector>> {
+        let parts = on_levels(&self.levels, line).into_iter();
+        let shown = parts.filter(|part| part.first().is_some_and(|&p| self.shows(p)));
+        shown
+            .map(|part| part.into_iter().map(|p| self.place(p)).collect())
+            .collect()
+    }
+
     /// The way from the building to the drawing on the level of a place of the plane, meters.
     pub fn from_building(&self, p: Vector) -> Vector {
         self.ways[self.levels.level(p)]
     }
 
+    /// The levels of the building.
+    pub fn levels(&self) -> &Levels {
+        &self.levels
+    }
+
     /// The name of the level of a place of the plane.
     pub fn level(&self, p: Vector) -> &str {
         &self.levels.all()[self.levels.level(p)].name
-    }
-
-    /// Moves the points of an agent's breakdown to their places in the building: its way up to the next join.
-    pub fn in_building(&self, breakdown: &mut Breakdown) {
-        let plane = Vector::from(breakdown.position);
-        let shift = self.levels.in_building(plane) - plane;
-        let moved = |p: &mut [f64; 2]| *p = (Vector::from(*p) + shift).into();
-        if let Some(way) = &mut breakdown.way {
-            let corners = way.corners.iter().map(|&corner| corner.into());
-            let line: Vec<Vector> = std::iter::once(plane).chain(corners).collect();
-            let ends = self.within_level(&line).into_iter().skip(1);
-            way.corners = ends.map(|p| (p + shift).into()).collect();
-            moved(&mut way.next);
-        }
-        for wall in &mut breakdown.walls {
-            moved(&mut wall.nearest_point);
-            wall.representative_point.iter_mut().for_each(moved);
-        }
-        breakdown.position = self.levels.in_building(plane).into();
-        breakdown.goal = self.levels.in_building(breakdown.goal.into()).into();
-    }
-
-    /// The part of a line of the plane up to where it leaves the level of its first point.
-    fn within_level(&self, line: &[Vector]) -> Vec<Vector> {
-        let Some(&first) = line.first() else {
-            return Vec::new();
-        };
-        let joins = &self.levels.joins()[self.levels.joins_at(first)];
-        let mut within = vec![first];
-        for side in line.windows(2) {
-            let part = |join: &Join| join.crossed(side[0], side[1]);
-            let end = joins.iter().filter_map(part).reduce(f64::min);
-            within.push(side[0] + (side[1] - side[0]) * end.unwrap_or(1.0));
-            if end.is_some() {
-                break;
-            }
-        }
-        within
     }
 
     /// The name of the only level that it shows.
@@ -137,11 +163,19 @@ impl Drawing {
 
     /// The names of the levels that are shown, each with the middles of the upper and the lower edge of its floor.
     pub fn names(&self) -> Vec<(&str, [Vector; 2])> {
-        let named = self.shown_levels().map(|(level, way)| {
-            let [low, high] = level.corners();
+        let named = self.rectangles().into_iter().map(|(name, [low, high])| {
             let middle = (low.x + high.x) * 0.5;
-            let ends = [high.y, low.y].map(|y| Vector::new(middle, y) + way);
-            (level.name.as_str(), ends)
+            (name, [high.y, low.y].map(|y| Vector::new(middle, y)))
+        });
+        named.collect()
+    }
+
+    /// The names of the levels that are shown, each with the lower left and the upper right corner of its floor.
+    pub fn rectangles(&self) -> Vec<(&str, [Vector; 2])> {
+        let shown = self.shown_levels();
+        let named = shown.map(|(_, level, way)| {
+            let corners = level.corners().map(|corner| corner + way);
+            (level.name.as_str(), corners)
         });
         named.collect()
     }
@@ -163,7 +197,7 @@ impl Drawing {
 
     /// Lines across stairs and ramps, a step and at least `least` meters apart.
     pub fn steps(&self, least: f64) -> Vec<[Vector; 2]> {
-        let lines = self.shown_levels().flat_map(|(level, way)| {
+        let lines = self.shown_levels().flat_map(|(_, level, way)| {
             let lines = steps(level, TREAD.max(least)).into_iter();
             lines.map(move |line| line.map(|p| p + way))
         });
@@ -224,7 +258,25 @@ impl Drawing {
         for zone in &mut drawn.journeys.zones {
             zone.area = zone.area.clone().moved(self.shift(zone.area.points()));
         }
+        let cabins = self.cabins(scene);
+        drawn.journeys.zones.extend(cabins);
         drawn
+    }
+
+    /// The cabins of lifts on the levels that are shown, as zones that change nothing.
+    fn cabins(&self, scene: &Scene) -> Vec<Zone> {
+        let cabins = scene.journeys.lifts.iter().flat_map(|lift| {
+            let levels = lift.stops.iter().map(|stop| usize::from(stop.level));
+            let shown = levels.filter(|&level| self.is_shown(level));
+            shown.map(|level| Zone {
+                name: lift.name.clone(),
+                area: lift.cabin.clone().moved(self.ways[level]),
+                speed_factor: 1.0,
+                motivation: 0.0,
+                time: 0.0..f64::INFINITY,
+            })
+        });
+        cabins.collect()
     }
 
     /// From the plane to the drawing for what lies on the level of the first of these points.
@@ -249,16 +301,21 @@ impl Drawing {
         }
     }
 
-    /// The levels that are shown, with their ways to the drawing.
-    fn shown_levels(&self) -> impl Iterator<Item = (&Level, Vector)> {
+    /// Whether the level with this number is shown.
+    fn is_shown(&self, number: usize) -> bool {
+        self.only.is_none_or(|only| only == number)
+    }
+
+    /// The levels that are shown, with their numbers and their ways to the drawing.
+    fn shown_levels(&self) -> impl Iterator<Item = (usize, &Level, Vector)> {
         let levels = self.levels.all().iter().zip(&self.ways).enumerate();
-        let shown = levels.filter(|(number, _)| self.only.is_none_or(|only| only == *number));
-        shown.map(|(_, (level, way))| (level, *way))
+        let shown = levels.filter(|(number, _)| self.is_shown(*number));
+        shown.map(|(number, (level, way))| (number, level, *way))
     }
 
     /// The walls around the floors that are shown.
     fn walls(&self) -> Option<Walls> {
-        let areas = self.shown_levels().flat_map(|(level, way)| {
+        let areas = self.shown_levels().flat_map(|(_, level, way)| {
             let floor = level.floor.iter().cloned();
             floor.map(move |area| area.moved(way))
         });

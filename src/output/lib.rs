@@ -9,6 +9,8 @@ pub mod results;
 
 pub mod scenery;
 
+pub mod over_joins;
+
 pub mod drawing;
 
 pub mod labels;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use analysis::round;
 use engine::agents::Agents;
 use engine::geometry::Ring;
-use engine::journeys::{Kind, Place, Queue, Status, Trip, Zone};
+use engine::journeys::{Journeys, Kind, Place, Queue, Status, Trip, Zone};
 use engine::math::{Vector, bounds, direction, perpendicular};
 use engine::scene::{Goal, Group, Scene};
 use engine::simulation::Simulation;
@@ -170,8 +170,15 @@ pub fn own_texts<'a>(
     texts.filter(move |label| !known.contains(&plain(&label.text)))
 }
 
-/// The name of a zone with what it changes.
-pub fn zone_name(zone: &Zone) -> String {
+/// The kind and the name of a zone with what it changes, or of a lift whose cabin is drawn as one.
+pub fn zone_name(journeys: &Journeys, zone: &Zone) -> String {
+    if journeys.lifts.iter().any(|lift| lift.name == zone.name) {
+        return named("lift", &zone.name);
+    }
+    named("zone", &changes(zone))
+}
+
+fn changes(zone: &Zone) -> String {
     let brief = round::brief;
     let speed = format!("speed × {}", brief(zone.speed_factor));
     let motivation = format!("motivation {}", brief(zone.motivation));

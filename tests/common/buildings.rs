@@ -56,11 +56,17 @@ pub fn refused(document: &Value) -> String {
     problem.unwrap_err().to_string()
 }
 
-/// Runs to the end; calls `see` with the id, the place in the building and the name of the level of everybody.
-pub fn each(scenario: &Scenario, mut see: impl FnMut(u32, Vector, &str)) -> usize {
+/// Runs to the end; calls `see` with the id, the place in the building and the name of the level of every agent.
+/// Returns the number of agents that have left.
+pub fn each(scenario: &Scenario, see: impl FnMut(u32, Vector, &str)) -> usize {
+    each_of(scenario, 15_000, see)
+}
+
+/// The same for at most this many frames.
+pub fn each_of(scenario: &Scenario, frames: u32, mut see: impl FnMut(u32, Vector, &str)) -> usize {
     let levels = scenario.scene.levels.clone().unwrap();
     let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
-    for _ in 0..15_000 {
+    for _ in 0..frames {
         simulation.evaluate().unwrap();
         let agents = simulation.frame().agents;
         for (&id, &p) in agents.id.iter().zip(&agents.position) {

@@ -2,6 +2,8 @@
 #![allow(dead_code)]
 
 pub mod bounded;
+#[cfg(feature = "program")]
+pub mod building_files;
 pub mod buildings;
 pub mod busy;
 pub mod documents;
@@ -19,12 +21,15 @@ pub mod page;
 pub mod pdf;
 #[cfg(feature = "program")]
 pub mod pictures;
+pub mod plan_files;
 pub mod plan_reading;
 pub mod plans;
 #[cfg(feature = "program")]
 pub mod program;
 pub mod quadrature;
+pub mod random_buildings;
 pub mod random_journeys;
+pub mod random_stairs;
 pub mod reading;
 pub mod reading_checkpoints;
 #[cfg(feature = "program")]
@@ -40,6 +45,7 @@ pub mod reports;
 pub mod ring;
 #[cfg(feature = "program")]
 pub mod room;
+pub mod sheets;
 pub mod simulated;
 pub mod social;
 pub mod suite;

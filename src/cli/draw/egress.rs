@@ -13,6 +13,7 @@ use lab::egress::Egress;
 use runs::case::Source;
 use runs::drive::Run;
 use runs::outputs::{Manner, Outputs};
+use scenario::quote::shown;
 use scenario::trajectories::{self, OnLevel, ReadOptions};
 
 /// Draws the curve, and prints the table.
@@ -30,13 +31,27 @@ pub fn draw(options: &DrawOptions, out: &Path, mut outputs: Outputs) -> Result<(
             refuse_settings(options, &options.scene)?;
             outputs.reads("the trajectories", path);
             outputs.check()?;
+            let own = options.tracks.reading(options.trajectory_fps);
             let read = ReadOptions {
                 level: OnLevel::Any,
-                ..options.tracks.reading(options.trajectory_fps)
+                ..own.clone()
             };
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-            let tracks = tracks(path, &read, TRAJECTORY_FPS)?;
-            (stem.into_owned(), Egress::of_tracks(&tracks))
+            let all = tracks(path, &read, TRAJECTORY_FPS)?;
+            match &options.tracks.level {
+                None => (stem.into_owned(), Egress::of_tracks(&all, &all)),
+                Some(level) => {
+                    // The file goes on after the last one has left the level.
+                    let on_level = tracks(path, &own, TRAJECTORY_FPS)?;
+                    let title = format!("{stem}: people who leave {}", shown(level));
+                    (title, Egress::of_tracks(&on_level, &all))
+                }
+            }
+        }
+        _ if options.tracks.level.is_some() => {
+            let reason = "--egress of a scenario shows the people who leave the building, on all levels: leave --level \
+                          out, or give trajectories (sandbox run FILE --trajectory FILE) to see who leaves a level";
+            return Err(Failure::Input(reason.to_owned()));
         }
         _ => simulated(options, outputs)?,
     };

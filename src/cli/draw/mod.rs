@@ -18,7 +18,7 @@ use serde_json::json;
 
 use super::arguments::{SceneOptions, TrackOptions, use_threads};
 use super::failure::Failure;
-use super::frames::{Run, recorded, tracked};
+use super::frames::{Run, of_level, recorded, tracked};
 use super::inputs::in_order;
 use super::interrupt::Interrupt;
 use super::moment;
@@ -31,8 +31,7 @@ use output::drawing::Drawing;
 use output::picture::{Paths, Picture, Trails};
 use output::plot::{Animation, PAPER_DPI, Print};
 use runs::outputs::{Manner, Outputs};
-use scenario::quote::shown;
-use scenario::{Scenario, suggestion, trajectories};
+use scenario::trajectories;
 
 /// The width of pictures without another one, millimeters: two columns of a paper.
 const WIDTH_MM: f64 = 180.0;
@@ -146,7 +145,6 @@ fn page(options: &DrawOptions, out: PathBuf) -> Result<PageOptions, Failure> {
         ("--field", options.field.is_some()),
         ("--paths", !options.paths.is_empty()),
         ("--egress", options.egress),
-        ("--level", options.tracks.level.is_some()),
         ("--width", options.width.is_some()),
         ("--dpi", options.dpi.is_some()),
         ("--paper", options.paper.is_some()),
@@ -175,7 +173,7 @@ fn page(options: &DrawOptions, out: PathBuf) -> Result<PageOptions, Failure> {
         geometry: scene.geometry.clone(),
         tracks: TrackOptions {
             unit: options.tracks.unit.clone(),
-            level: None,
+            level: options.tracks.level.clone(),
         },
         trajectory_fps: options.trajectory_fps,
         page_viewer: options.page_viewer.clone(),
@@ -215,12 +213,8 @@ fn open(
     let run = match extension(path).as_str() {
         "rrd" => {
             refuse_settings(options, &options.scene)?;
-            if options.tracks.level.is_some() {
-                let reason = "--level is for scenarios and trajectory files, not for recordings";
-                return Err(Failure::Input(reason.to_owned()));
-            }
             outputs.reads("the recording", path);
-            recorded::open(path)?
+            recorded::open(path, options.tracks.level.as_deref())?
         }
         _ if trajectories::has_ending(path) => {
             refuse_settings(options, &options.scene)?;
@@ -244,42 +238,16 @@ fn simulate(
     }
     let until = times.at(times.count - 1);
     let scenario = moment::scenario(&options.run, (&options.scene, until), 0, outputs)?;
+    let level = options.tracks.level.as_deref();
+    let drawing = Drawing::named(&scenario, level).map_err(of_level)?;
     let typed = options.paths.iter();
-    let parsed = typed.map(|text| paths::paths(text, &scenario));
+    let parsed = typed.map(|text| paths::paths(text, &scenario, drawing.as_ref()));
     let paths = parsed.collect::<Result<Vec<_>, _>>()?;
     let option = match times.is_animation {
         true => format!("--to {}", options.to.unwrap_or(until)),
         false => format!("--at {}", options.at),
     };
-    let drawing = match &options.tracks.level {
-        Some(name) => Some(drawing_of_level(&scenario, name)?),
-        None => Drawing::of(&scenario.scene),
-    };
-    if drawing.is_some() && !paths.is_empty() {
-        let reason =
-            "--paths shows routes on one floor, and this is a building with several levels";
-        return Err(Failure::Input(reason.to_owned()));
-    }
     Ok((simulated::open(&scenario, drawing, (until, option))?, paths))
-}
-
-/// The drawing of the level of this name.
-fn drawing_of_level(scenario: &Scenario, name: &str) -> Result<Drawing, Failure> {
-    let Some(levels) = &scenario.scene.levels else {
-        let reason = "--level is for buildings, and this scenario has no `levels`";
-        return Err(Failure::Input(reason.to_owned()));
-    };
-    let names = || levels.all().iter().map(|level| level.name.as_str());
-    let number = names().position(|own| own == name).ok_or_else(|| {
-        let near = suggestion(name, names());
-        let all: Vec<String> = names().map(|name| format!("`{}`", shown(name))).collect();
-        Failure::Input(format!(
-            "--level: there is no level named `{}`{near}; there are {}",
-            shown(name),
-            all.join(", ")
-        ))
-    })?;
-    Ok(Drawing::of_level(levels.clone(), number))
 }
 
 /// Rejects settings of scenarios for runs that are not simulated.

@@ -7,12 +7,13 @@ use serde_json::json;
 use crate::cli::failure::Failure;
 use engine::math::Vector;
 use engine::routes::{Destination, Routes};
+use output::drawing::Drawing;
 use output::picture::Paths;
 use scenario::quote::shown;
 use scenario::{Scenario, WayFinding, suggestion};
 
-/// The routes to the place or point that `text` names.
-pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
+/// The routes to the place or point that `text` names; a point of a building lies on the only level of `drawing`.
+pub fn paths(text: &str, scenario: &Scenario, drawing: Option<&Drawing>) -> Result<Paths, Failure> {
     let refused = |reason: String| Failure::Input(format!("--paths {}: {reason}", shown(text)));
     let scene = &scenario.scene;
     let places = &scene.journeys.places;
@@ -29,6 +30,12 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
         };
         return Err(refused(reason.to_owned()));
     };
+    let on_level = drawing.map_or(Some(Vector::zeros()), Drawing::to_plane);
+    let Some(to_plane) = on_level.or(place.map(|_| Vector::zeros())) else {
+        return Err(refused(
+            "a point of a building lies on a level: add --level NAME".to_owned(),
+        ));
+    };
     let (name, to) = match (place, point) {
         (Some(k), _) => {
             let name = format!("{} {}", places[k].kind.name(), places[k].name);
@@ -38,7 +45,7 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
             let point = point.unwrap_or_default();
             (
                 format!("({}, {})", point.x, point.y),
-                Destination::Goal(point),
+                Destination::Goal(point + to_plane),
             )
         }
     };
@@ -48,7 +55,8 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
         // No agent goes there, so the scene has no path map to it.
         false => {
             let goals: Vec<_> = place.map(|k| places[k].goals.clone()).into_iter().collect();
-            let extra = Routes::new(routes.floor.clone(), &goals, point.into_iter().collect())
+            let points = point.iter().map(|point| point + to_plane).collect();
+            let extra = Routes::new(routes.floor.clone(), &goals, points)
                 .map_err(|error| refused(format!("{error}; give a point that is")))?;
             let to = place.map_or(to, |_| Destination::Place(0));
             (Arc::new(extra), to)

@@ -127,6 +127,11 @@ impl Run {
     }
 }
 
+/// A problem of `--level`.
+pub fn of_level(problem: String) -> Failure {
+    Failure::Input(format!("--level: {problem}"))
+}
+
 /// The largest support radius of all groups, meters; that of §5.6 without groups.
 fn support_radius(scene: &Scene) -> f64 {
     let groups = scene.groups.iter();

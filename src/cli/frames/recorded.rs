@@ -3,14 +3,14 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::{Film, Over, Run};
+use super::{Over, Run, of_level};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::talk;
 use engine::agents::REFERENCE_RADIUS;
 use engine::geometry::{Polygon, assemble};
 use engine::math::Vector;
 use engine::scene::Scene;
-use output::drawing::Drawn;
+use output::drawing::{Drawing, Drawn};
 use output::picture::Crowd;
 use output::recording::Recorded;
 use scenario::Scenario;
@@ -18,9 +18,21 @@ use scenario::Scenario;
 /// Corners that are nearer to each other are one, meters: recordings have single precision.
 const TOLERANCE: f64 = 1e-4;
 
-/// The run that a recording holds. Walls, places and ranges are those of the scenario in it; a recording of a
-/// measurement has only walls.
-pub fn open(path: &Path) -> Result<Run, Failure> {
+/// The quantity with the numbers of the levels of people in a building.
+const LEVEL: &str = "level";
+
+/// A recording as it is drawn.
+struct Film {
+    recorded: Recorded,
+    /// How it was drawn when it was recorded, if it is one of a building.
+    drawing: Option<Drawing>,
+    /// The number of the only level that is shown.
+    only: Option<usize>,
+}
+
+/// The run that a recording holds, of a building on all levels or on that of this name. Walls, places and ranges are
+/// those of the scenario in it; a recording of a measurement has only walls.
+pub fn open(path: &Path, level: Option<&str>) -> Result<Run, Failure> {
     let recorded = Recorded::read(path).map_err(|error| Failure::Input(error.to_string()))?;
     let scenario = recorded.scenario().and_then(|text| {
         let parsed = Scenario::parse(text, &path.display().to_string(), &[]);
@@ -33,15 +45,22 @@ pub fn open(path: &Path) -> Result<Run, Failure> {
     let title = recorded.title().unwrap_or_default().to_owned();
     let run = match &scenario {
         Some(scenario) => {
-            let drawn = Drawn::of(scenario);
-            let frames = Over::new(recorded, times, drawn.scene.clone().into_owned());
+            let drawing = Drawing::named(scenario, level).map_err(of_level)?;
+            let only = drawing.as_ref().and_then(|drawing| drawing.only);
+            let film = Film::of(recorded, Drawing::of(&scenario.scene), only)?;
+            let drawn = Drawn::with(scenario, drawing);
+            let frames = Over::new(film, times, drawn.scene.clone().into_owned());
             Run::of(scenario, drawn, Box::new(frames))
+        }
+        None if level.is_some() => {
+            let problem = "the recording has no scenario, and no levels".to_owned();
+            return Err(of_level(problem));
         }
         None => {
             let corners = recorded.walls().concat().into_iter();
             let people = recorded.crowd(0).positions;
             let scene = Scene::with_obstacles(bodies(recorded.walls()));
-            let frames = Over::new(recorded, times, scene);
+            let frames = Over::new(Film::of(recorded, None, None)?, times, scene);
             Run::around(corners.chain(people), Box::new(frames))
         }
     };
@@ -80,44 +99,106 @@ fn bodies(walls: &[Vec<Vector>]) -> Vec<Polygon> {
     }
 }
 
-impl Film for Recorded {
+impl Film {
+    fn of(
+        recorded: Recorded,
+        drawing: Option<Drawing>,
+        only: Option<usize>,
+    ) -> Result<Self, Failure> {
+        let has_levels = recorded.names().any(|name| name == LEVEL);
+        if only.is_some() && !has_levels {
+            let problem =
+                "the recording does not say on which levels its people are: record it again";
+            return Err(of_level(problem.to_owned()));
+        }
+        Ok(Self {
+            recorded,
+            drawing: drawing.filter(|_| has_levels),
+            only,
+        })
+    }
+
+    /// The numbers of the levels of the people in frame `k`; empty without levels.
+    fn levels(&self, k: usize) -> Vec<usize> {
+        let numbers = self
+            .drawing
+            .as_ref()
+            .and_then(|_| self.recorded.values(k, LEVEL));
+        let all = numbers.into_iter().flatten();
+        all.map(|number| number as usize).collect()
+    }
+
+    /// Whether people are shown, given their levels.
+    fn shows(&self, levels: &[usize], i: usize) -> bool {
+        self.only.is_none_or(|only| levels.get(i) == Some(&only))
+    }
+
+    /// The way from the drawing to the building for person `i`, meters.
+    fn to_building(&self, levels: &[usize], i: usize) -> Vector {
+        let drawing = self.drawing.as_ref().zip(levels.get(i));
+        let way = drawing.and_then(|(drawing, &level)| drawing.way(level));
+        way.map_or_else(Vector::zeros, |way| -way)
+    }
+
+    /// The people in frame `k`, at their places in the building.
+    fn places(&self, k: usize) -> HashMap<i64, Vector> {
+        let (crowd, levels) = (self.recorded.crowd(k), self.levels(k));
+        let people = crowd.ids.into_iter().zip(crowd.positions).enumerate();
+        people
+            .map(|(i, (id, p))| (id, p + self.to_building(&levels, i)))
+            .collect()
+    }
+}
+
+impl super::Film for Film {
     /// Velocities are differences between the frames before and after.
     fn crowd(&self, k: usize) -> Crowd {
-        let crowd = self.crowd(k);
-        let times: Vec<f64> = self.times().collect();
-        let others = [k.saturating_sub(1), (k + 1).min(times.len() - 1)].map(|k| {
-            let other = self.crowd(k);
-            let places = other.ids.into_iter().zip(other.positions);
-            (times[k], places.collect::<HashMap<_, _>>())
-        });
-        let velocity = |(id, &place): (&i64, &Vector)| {
+        let (crowd, levels) = (self.recorded.crowd(k), self.levels(k));
+        let times: Vec<f64> = self.recorded.times().collect();
+        let beside = [k.saturating_sub(1), (k + 1).min(times.len() - 1)];
+        let others = beside.map(|k| (times[k], self.places(k)));
+        let velocity = |id: i64, place: Vector| {
             let [from, to] = others.each_ref().map(|(time, places)| {
-                let other = places.get(id).map(|&other| (*time, other));
+                let other = places.get(&id).map(|&other| (*time, other));
                 other.unwrap_or((times[k], place))
             });
             (to.0 > from.0).then(|| (to.1 - from.1) / (to.0 - from.0))
         };
-        let is_known = |radius: &f64| *radius > 0.0;
-        let known = crowd.radii.into_iter();
-        let radii = known.map(|radius| Some(radius).filter(is_known).unwrap_or(REFERENCE_RADIUS));
-        let radius: Vec<f64> = radii.collect();
-        let mass = |radius: &f64| (radius / REFERENCE_RADIUS).powi(2);
-        let velocities = crowd.ids.iter().zip(&crowd.positions).map(velocity);
-        Crowd {
+        let mut shown = Crowd {
             time: times[k],
-            velocity: velocities.collect(),
-            id: crowd.ids,
-            position: crowd.positions,
-            mass: radius.iter().map(mass).collect(),
-            radius,
+            ..Crowd::default()
+        };
+        for (i, (&id, &p)) in crowd.ids.iter().zip(&crowd.positions).enumerate() {
+            if !self.shows(&levels, i) {
+                continue;
+            }
+            let place = p + self.to_building(&levels, i);
+            let radius = match crowd.radii[i] {
+                radius if radius > 0.0 => radius,
+                _ => REFERENCE_RADIUS,
+            };
+            shown.id.push(id);
+            shown
+                .position
+                .push(if self.only.is_some() { place } else { p });
+            shown.radius.push(radius);
+            shown.mass.push((radius / REFERENCE_RADIUS).powi(2));
+            shown.velocity.push(velocity(id, place));
         }
+        shown
     }
 
     fn names(&self) -> Vec<&str> {
-        self.names().collect()
+        self.recorded.names().collect()
     }
 
     fn values(&self, k: usize, name: &str) -> Result<Option<Vec<f64>>, Failure> {
-        Ok(self.values(k, name))
+        let Some(values) = self.recorded.values(k, name) else {
+            return Ok(None);
+        };
+        let levels = self.levels(k);
+        let numbered = values.into_iter().enumerate();
+        let shown = numbered.filter(|(i, _)| self.shows(&levels, *i));
+        Ok(Some(shown.map(|(_, value)| value).collect()))
     }
 }

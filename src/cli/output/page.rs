@@ -51,12 +51,13 @@ impl PageOfRun {
             has_viewer: viewer.is_some(),
             ..options(&run.scenario, &debug, record.record_from)
         };
+        let (page, drawing) = create(path, (&run.scenario, &run.simulation), &options)?;
         Ok(Self {
-            page: create(path, (&run.scenario, &run.simulation), &options)?,
+            page,
             due: RecordedFrames::new(record, &run.simulation),
             debug,
             events: Events::new(run.scenario.entering),
-            drawing: Drawing::of(run.simulation.scene()),
+            drawing,
             viewer,
             results: None,
         })
@@ -88,18 +89,19 @@ impl Observer<Failure> for PageOfRun {
     }
 }
 
-/// A page with the plan of a scenario.
+/// A page with the plan of a scenario, and how the levels of a building lie in it.
 fn create(
     path: &Path,
     (scenario, simulation): (&Scenario, &Simulation),
     options: &PageOptions,
-) -> Result<Page, Failure> {
+) -> Result<(Page, Option<Drawing>), Failure> {
     let (drawn, nobody) = (Drawn::of(scenario), Crowd::default());
     let picture = Picture {
         simulation: Some(simulation),
         ..Picture::of(&drawn, &nobody, String::new())
     };
-    Ok(Page::create(path, &picture, options)?)
+    let page = Page::create(path, &picture, options)?;
+    Ok((page, drawn.drawing))
 }
 
 /// The options of a page that begins at the time `from`.
@@ -134,8 +136,7 @@ pub fn save_moment(
         follows,
         ..options(scenario, &debug, now)
     };
-    let mut page = create(path, (scenario, simulation), &options)?;
-    let drawing = Drawing::of(simulation.scene());
+    let (mut page, drawing) = create(path, (scenario, simulation), &options)?;
     let crowd = Crowd::of(simulation, drawing.as_ref());
     page.add(&Moment::of(simulation, &crowd, (0, Vec::new()), &debug))?;
     let title = format!("Forces at {now:.2} s");

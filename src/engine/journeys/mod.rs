@@ -1,8 +1,10 @@
 //! Journeys: the places that agents visit one after the other, and how they choose between places.
 
+mod lift;
 mod place;
 mod trip;
 
+pub use lift::{Lift, Stop};
 pub use place::{Door, Exit, Kind, Place, Queue, WaitingArea};
 pub use trip::{Status, Trip};
 
@@ -24,6 +26,8 @@ pub struct Journeys {
     pub changes: Vec<Change>,
     /// Areas in which agents walk slower or faster.
     pub zones: Vec<Zone>,
+    /// Lifts, for which agents wait in waiting areas.
+    pub lifts: Vec<Lift>,
 }
 
 /// A sequence of stages. If the last stage is not an exit, agents stay there when they have finished it.
@@ -42,6 +46,8 @@ pub struct JourneyStage {
     pub choice: Choice,
     /// The numbers of the places, at least one.
     pub places: Vec<u16>,
+    /// The number of the level to which agents ride from there by a lift.
+    pub to_level: Option<u16>,
 }
 
 impl JourneyStage {
@@ -134,6 +140,12 @@ impl Journeys {
     fn zones_at(&self, p: Vector, time: f64) -> impl Iterator<Item = &Zone> {
         let zones = self.zones.iter();
         zones.filter(move |zone| zone.time.contains(&time) && zone.area.contains(p))
+    }
+
+    /// The lift for which agents wait at a place, and the number of its stop there.
+    pub fn lift_at(&self, place: u16) -> Option<(&Lift, usize)> {
+        let mut lifts = self.lifts.iter();
+        lifts.find_map(|lift| Some((lift, lift.stop_at(place)?)))
     }
 
     /// Whether there are doors.

@@ -8,7 +8,7 @@ use crate::math::{Vector, bounds};
 /// The side of a cell, meters: doubled until there are few enough cells.
 const SIDE: f64 = 1.0;
 /// The most cells per wall.
-const PER_WALL: f64 = 4.0;
+const PER_WALL: f64 = 32.0;
 
 /// Square cells over all walls and their surroundings.
 #[derive(Debug, Clone, Default)]

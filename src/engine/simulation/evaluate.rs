@@ -120,6 +120,7 @@ impl Simulation {
             walls: (&scene.walls, scene.wall_method),
             parameters: |group: u16| &scene.groups[usize::from(group)].blend.sph,
             time_step: dt,
+            task: self.fixed.task_of_blocks(),
         };
         self.stages.time(Stage::DensityAndPressure, || {
             each!(&mut derived.packed, columns => input.update(columns, fields));
@@ -159,16 +160,17 @@ impl Simulation {
             wishes.enumerate().for_each(|(i, wish)| {
                 let position = agents.position[i];
                 let pace = scene.pace(agents, i, time);
+                let levels = scene.levels.as_ref();
+                let carried = levels.map_or(Vector::zeros(), |levels| levels.carries(position));
                 let trip = agents.trip.get(i).and_then(Option::as_ref);
                 if let Some(place) = trip.and_then(|trip| trip.hold) {
-                    *wish = clamp_length((place - position) / ARRIVAL_TIME, pace);
+                    *wish = clamp_length((place - position) / ARRIVAL_TIME, pace) + carried;
                     return;
                 }
                 let heading = scene.groups[usize::from(agents.group[i])].direction;
                 let heading = heading.unwrap_or_else(|| direction(aims[i] - position));
-                let levels = scene.levels.as_ref();
                 let slope = levels.map_or(1.0, |levels| levels.speed_factor(position, heading));
-                *wish = heading * (pace * slope);
+                *wish = heading * (pace * slope) + carried;
             });
         });
     }
@@ -247,7 +249,7 @@ impl Simulation {
             let blocks = allowed
                 .par_chunks_mut(BLOCK)
                 .zip(heading.par_chunks_mut(BLOCK));
-            let blocks = blocks.with_min_len(TASK).enumerate();
+            let blocks = blocks.with_min_len(fixed.task_of_blocks()).enumerate();
             blocks.for_each(|(b, (allowed, heading))| {
                 for followers in &laws {
                     let due = fixed.due(&frame, b, followers, allowed);
@@ -256,8 +258,11 @@ impl Simulation {
                         .law
                         .decide(&frame, b, &due, Decided { allowed, heading });
                 }
-                for allowed in allowed {
-                    allowed.get_or_insert(f64::INFINITY); // no law
+                for (allowed, heading) in allowed.iter_mut().zip(heading) {
+                    if allowed.is_none() {
+                        // No law, or an escalator, whose steps carry agents into whatever is ahead.
+                        (*allowed, *heading) = (Some(f64::INFINITY), 0);
+                    }
                 }
             });
         });
@@ -320,11 +325,19 @@ impl Simulation {
 }
 
 impl Fixed {
+    /// The fewest blocks per parallel task: agents on stairs are near walls, which take much of the time.
+    fn task_of_blocks(&self) -> usize {
+        match self.scene.levels {
+            Some(_) => 2,
+            None => TASK,
+        }
+    }
+
     /// The fewest blocks per parallel task when forces are summed.
     fn task(&self) -> usize {
         match self.needs.avoidance {
             Some(_) => 1, // searching the avoidance radius is enough work for a task
-            None => TASK,
+            None => self.task_of_blocks(),
         }
     }
 
@@ -351,9 +364,13 @@ impl Fixed {
     ) -> Deciders {
         let (mut is_due, mut gap) = ([false; BLOCK], [1.0; BLOCK]);
         let headings = followers.law.headings();
+        let levels = self.scene.levels.as_ref().filter(|levels| levels.carry());
         for (k, allowed) in allowed.iter().enumerate() {
             let i = b * BLOCK + k;
-            is_due[k] = allowed.is_none() && followers.groups[usize::from(frame.agents.group[i])];
+            let p = frame.agents.position[i];
+            let is_carried = levels.is_some_and(|levels| levels.carries(p) != Vector::zeros());
+            let follows = followers.groups[usize::from(frame.agents.group[i])] && !is_carried;
+            is_due[k] = allowed.is_none() && follows;
             if let Some(law) = headings.filter(|_| is_due[k]) {
                 gap[k] = self.gap(frame, i, (law, followers.meet));
             }

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
+use super::lifts::LiftState;
 use super::stream::Stream;
 use crate::journeys::Journeys;
 use crate::math::Vector;
@@ -16,6 +17,8 @@ pub struct Progress {
     pub begun: Vec<u32>,
     /// The state of each place.
     pub places: Vec<PlaceState>,
+    /// The state of each lift.
+    pub lifts: Vec<LiftState>,
     /// The number of agents that have left by an exit, and whose bodies still walk on.
     pub outside: u32,
     /// The number of changes of places so far.
@@ -34,6 +37,8 @@ impl Progress {
         self.begun.resize(journeys.journeys.len(), 0);
         let places = journeys.places.len();
         self.places.resize_with(places, PlaceState::default);
+        self.lifts
+            .resize_with(journeys.lifts.len(), LiftState::default);
     }
 
     /// Whether this progress fits `scene`.
@@ -41,7 +46,9 @@ impl Progress {
         let journeys = &scene.journeys;
         let is_new = self.places.is_empty() && self.begun.is_empty();
         let counts = (self.places.len(), self.begun.len());
+        let has_lifts = is_new || self.lifts.len() == journeys.lifts.len();
         self.changes <= journeys.changes.len()
+            && has_lifts
             && (is_new || counts == (journeys.places.len(), journeys.journeys.len()))
     }
 }

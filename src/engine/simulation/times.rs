@@ -178,7 +178,10 @@ impl Simulation {
             here = rooms.beyond(side, end);
             back = Some(side.other());
         }
-        points
+        let seen = points
+            .into_iter()
+            .map(|point| rooms.floor.seen_from(p, point));
+        seen.collect()
     }
 
     /// The waiting time before each opening, seconds: that of an agent that comes last, beyond its walk. One for each

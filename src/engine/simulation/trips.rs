@@ -51,6 +51,7 @@ impl Crowd {
             }
         }
         self.serve_queues(scene);
+        self.serve_lifts(scene);
         let due = self.where_due(|crowd, i| crowd.needs_attention(scene, i));
         let seen = self.seen_by(scene, &due);
         for (i, seen) in due.into_iter().zip(&seen) {

@@ -21,6 +21,8 @@ pub struct OnLevels {
     times: Vec<f64>,
     /// The number of people on each level, at each time.
     counts: Vec<Vec<u32>>,
+    /// Whether the last count is due. Otherwise it is that of the current frame, and the next one replaces it.
+    is_kept: bool,
 }
 
 /// A row of the table.
@@ -43,20 +45,25 @@ impl OnLevels {
             levels,
             times: Vec::new(),
             counts: vec![Vec::new(); count],
+            is_kept: true,
         }
     }
 
-    /// Counts people in the current frame, if a second has passed since the last count or the run `is_over`.
-    pub fn see(&mut self, simulation: &Simulation, is_over: bool) {
+    /// Counts people in the current frame: once per second, when the building `is_empty`, and in the last frame.
+    pub fn see(&mut self, simulation: &Simulation, is_empty: bool) {
         let Some(levels) = &self.levels else {
             return;
         };
         let now = simulation.frame().clock.time();
+        if !self.is_kept {
+            self.times.pop();
+            self.counts.iter_mut().for_each(|all| _ = all.pop());
+        }
         let last = self.times.last().copied();
-        let is_due = last.is_none_or(|last| now > last && (is_over || now >= last + EVERY - 1e-9));
-        if !is_due {
+        if last.is_some_and(|last| now <= last) {
             return;
         }
+        self.is_kept = is_empty || last.is_none_or(|last| now >= last + EVERY - 1e-9);
         let agents = simulation.frame().agents;
         let mut counts = vec![0; self.counts.len()];
         for i in agents.present() {
@@ -93,7 +100,8 @@ impl OnLevels {
             .fixed("empty from [s]", 0, |row| row.empty_at)
             .column("at the end", |row| row.end)
             .table();
-        let caption = "The number of people on each level, counted every second.";
+        let caption =
+            "The number of people on each level, counted every second and in the last frame.";
         vec![
             Block::heading("Levels"),
             Block::Table(table, caption.to_owned()),

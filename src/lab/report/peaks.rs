@@ -27,9 +27,8 @@ pub struct Peaks {
 impl Peaks {
     /// A map of what pictures of the scenario show.
     pub fn new(scenario: &Scenario) -> Self {
-        let drawing = Drawing::of(&scenario.scene);
-        let shown = drawing.as_ref().map(|drawing| drawing.shown);
-        let Region { min, max } = shown.unwrap_or(scenario.view.region);
+        let Drawn { drawing, view, .. } = Drawn::of(scenario);
+        let Region { min, max } = view;
         let cell = CELL.max((max - min).max() / MOST);
         let count = (max - min).map(|length| (length / cell).ceil().max(1.0));
         Self {

@@ -21,6 +21,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use crate::drawing::Drawing;
 use crate::picture::Picture;
 use crate::scenery;
 use block::Block;
@@ -79,6 +80,7 @@ impl Page {
     /// The file cannot be written.
     pub fn create(path: &Path, plan: &Picture, options: &PageOptions) -> Result<Self, PageError> {
         let mut file = PageFile::create(path)?;
+        let levels = plan.drawing.map_or(Vec::new(), Drawing::rectangles);
         let plan = plan.plan();
         let origin = plan.0[0].map(f64::floor);
         let mut columns = vec!["x", "y", "density", "speed"];
@@ -86,7 +88,8 @@ impl Page {
         if has_trips {
             columns.extend(["trip", "place"]);
         }
-        let scene = options.scene(plan, origin, &columns);
+        let mut scene = options.scene(plan, origin, &columns);
+        scene["levels"] = plan::levels(&levels, origin);
         file.write(Part::Text(
             options.beginning() + &html::data("scene", &scene),
         ))?;

@@ -59,6 +59,18 @@ pub fn marks(marks: &[Mark], origin: Vector) -> Vec<Value> {
     marks.iter().filter_map(mark).collect()
 }
 
+/// The levels of a building, each with its name and two corners of its floor: `null` if there are not several.
+pub fn levels(levels: &[(&str, [Vector; 2])], origin: Vector) -> Value {
+    if levels.len() < 2 {
+        return Value::Null;
+    }
+    let level = |(name, corners): &(&str, [Vector; 2])| {
+        let corners = corners.map(|corner| <[f64; 2]>::from(corner - origin).map(millimeters));
+        json!([name, corners])
+    };
+    levels.iter().map(level).collect()
+}
+
 /// Rounded to millimeters.
 pub fn millimeters(length: f64) -> f64 {
     (length * 1e3).round() / 1e3

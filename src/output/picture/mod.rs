@@ -278,7 +278,7 @@ impl<'a> Picture<'a> {
         let mut below = scene::ground(scene);
         let mut above = Vec::new();
         let drawable = paths.zip(self.simulation);
-        let drawn = drawable.map(|(paths, simulation)| paths.draw(simulation, frame));
+        let drawn = drawable.map(|(paths, simulation)| paths.draw(simulation, frame, self.drawing));
         let (title, bar) = match drawn {
             Some(drawn) => {
                 below.extend(drawn.field);

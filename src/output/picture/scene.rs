@@ -92,7 +92,7 @@ pub fn zones(scene: &Scene, frame: &Frame, inside: bool, labels: &mut Labels) ->
         let hatching = scenery::hatching(&zone.area, scenery::across_zones(), frame.meters(7.0));
         let lines = hatching.into_iter().map(|line| line.map(xy));
         marks.extend(lines.map(|line| Mark::line(line, style(0.4))));
-        let name = scenery::named("zone", &scenery::zone_name(zone));
+        let name = scenery::zone_name(&scene.journeys, zone);
         labels.add(&name, ZONE, &around(zone.area.points(), inside));
     }
     marks

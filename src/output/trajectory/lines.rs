@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::error::Cause;
 use super::{Row, Sink};
 use figures::table::csv_lines;
+use scenario::trajectories::one_word;
 
 /// Lines per parallel task.
 const SOME: usize = 1024;
@@ -76,8 +77,7 @@ fn text(rows: &[Row<'_>], _: bool) -> Result<Vec<u8>, Cause> {
             let (id, frame, at, z) = (row.id(), row.number, row.place(), row.height());
             write!(lines, "{id}\t{frame}\t{}\t{}\t{z}", at.x, at.y)?;
             if let Some(level) = row.level() {
-                let words: Vec<&str> = level.split_whitespace().collect();
-                write!(lines, "\t{}", words.join("_"))?;
+                write!(lines, "\t{}", one_word(level))?;
             }
             writeln!(lines)?;
         }

@@ -52,6 +52,8 @@ pub struct Sqlite {
     committed: u64,
     /// Frames since the last commit.
     pending: u64,
+    /// Whether its rows have a level and a height.
+    has_levels: bool,
 }
 
 impl Sqlite {
@@ -73,6 +75,7 @@ impl Sqlite {
             committed_at: Instant::now(),
             committed: 0,
             pending: 0,
+            has_levels: levels.is_some(),
         };
         sqlite.set("version", "2")?;
         sqlite.set("fps", &format!("{fps:?}"))?;
@@ -105,10 +108,7 @@ impl Sqlite {
     }
 
     fn insert(&self, frame: u64, rows: &[Row<'_>]) -> rusqlite::Result<()> {
-        let of_level = match rows.first().and_then(Row::level) {
-            Some(_) => ", ?, ?",
-            None => "",
-        };
+        let of_level = if self.has_levels { ", ?, ?" } else { "" };
         let into_rows =
             format!("INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?{of_level})");
         let mut insert = self.connection.prepare(&into_rows)?;

@@ -19,13 +19,13 @@ use crate::keys::curve::Curve;
 use crate::keys::from::FromData;
 use crate::keys::goals::{Aim, WayFinding};
 use crate::keys::interventions::Intervention;
-use crate::keys::levels::{Join, Level};
+use crate::keys::levels::{Join, Level, levels};
 use crate::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE, LONGEST_TIME, STRONGEST};
 use crate::keys::names::{optional_word, word};
 use crate::keys::numerics::{IntegratorChoice, TimeStep};
 use crate::keys::people::{Agent, Crowd, Entrance, Grid};
 use crate::keys::periodic::Periodic;
-use crate::keys::places::{Door, Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
+use crate::keys::places::{Door, Exit, Journey, Lift, Queue, WaitingArea, Waypoint, Zone};
 use crate::keys::preset::Preset;
 use crate::keys::profiles::ProfileChoice;
 use crate::keys::shapes::{Corners, Label, Outline, Point, Ring, obstacles, walkable_area};
@@ -132,7 +132,7 @@ pub struct File {
     /// everywhere.
     #[schemars(schema_with = "walkable_area")]
     pub walkable_area: Option<Vec<Vec<Ring>>>,
-    /// How the files of `walkable_area` and `obstacles` are read: what they do not say themselves.
+    /// How the files of `walkable_area`, `obstacles` and `levels` are read: what they do not say themselves.
     pub plan: Option<Reading>,
     /// Solid bodies, corners in meters, in either orientation: a list of polygons, each a list of corners or of rings
     /// (the outline, then the holes), or the name of a DXF, GeoJSON, WKT or JuPedSim XML file. Corners that enclose
@@ -140,10 +140,14 @@ pub struct File {
     #[schemars(schema_with = "obstacles")]
     pub obstacles: Vec<Outline>,
     /// The levels of a building, instead of `walkable_area` and `obstacles`. Places, people, labels and measurements
-    /// then have a `level`.
+    /// then have a `level`. A list, or the name of a file that has all of them and their joins: GeoJSON in the words of
+    /// IMDF, also a folder or a zip archive of it, or JuPedSim XML.
+    #[schemars(schema_with = "levels")]
     pub levels: Vec<Level>,
-    /// The edges at which people walk from one level to another.
+    /// The edges at which people walk from one level to another, besides those of a file under `levels`.
     pub joins: Vec<Join>,
+    /// Lifts between levels.
+    pub lifts: Vec<Lift>,
     /// The scene repeats itself without end.
     pub periodic: Option<Periodic>,
     /// The goal of agents that have none of their own. Default in a periodic scene: along the axis.

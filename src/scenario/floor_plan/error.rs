@@ -50,6 +50,9 @@ pub enum FloorPlanError {
         /// Extent along y, meters.
         height: f64,
     },
+    /// The file's levels are none, or wrong as a whole.
+    #[error("{0}")]
+    Levels(String),
     /// Holes and obstacles fill the walkable area.
     #[error("holes and obstacles leave no room for a person")]
     NoRoom,
@@ -64,6 +67,20 @@ pub enum FloorPlanError {
 }
 
 impl FloorPlanError {
+    /// The same error, of a level.
+    pub(super) fn of_level(self, level: &str) -> Self {
+        let (place, reason) = match self {
+            Self::Geometry { place, reason } => (place, reason),
+            Self::EmptyGeometry(place) => (place, "the geometry is empty; remove it".to_owned()),
+            other => (String::new(), other.to_string()),
+        };
+        let comma = if place.is_empty() { "" } else { ", " };
+        Self::Geometry {
+            place: format!("{level}{comma}{place}"),
+            reason,
+        }
+    }
+
     /// A geometry of the type `found` where only polygons and lines make sense.
     pub(super) fn no_area(place: &str, found: &str) -> Self {
         Self::Geometry {

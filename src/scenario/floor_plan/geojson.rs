@@ -3,8 +3,9 @@
 use crate::error::quote::shown;
 use crate::error::suggestion;
 use crate::kinds;
+use geojson::feature::Id;
 use geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::error::FloorPlanError;
 use super::kind::Kind;
@@ -40,6 +41,70 @@ pub fn drawn(text: &str, all_obstacles: bool) -> Result<Drawn, FloorPlanError> {
         }
     }
     Ok(drawn)
+}
+
+/// A feature that says what it is by its members and properties.
+pub struct Described {
+    /// Its number, from 1.
+    pub number: usize,
+    pub id: Option<String>,
+    /// The members beside those of GeoJSON.
+    pub members: Map<String, Value>,
+    pub properties: Map<String, Value>,
+    /// Its geometry; `None` if it has none.
+    pub geometry: Option<Geometry>,
+}
+
+impl Described {
+    /// Its parts in messages called `place`, of one kind.
+    pub fn shapes(&self, place: &str, kind: Kind) -> Result<Vec<Shape>, FloorPlanError> {
+        let mut shapes = Vec::new();
+        match &self.geometry {
+            Some(geometry) => parts(geometry, place)?.shapes(place, kind, &mut shapes)?,
+            None => return Err(FloorPlanError::EmptyGeometry(place.to_owned())),
+        }
+        Ok(shapes)
+    }
+}
+
+/// The features of a collection, in no unit yet.
+pub struct Collection {
+    pub features: Vec<Described>,
+    /// Whether it declares that its coordinates are degrees.
+    pub is_in_degrees: bool,
+    /// The unit that it declares, and notes on it.
+    pub drawn: Drawn,
+}
+
+/// The features of `text`.
+pub fn collection(text: &str) -> Result<Collection, FloorPlanError> {
+    let mut document: Value = serde_json::from_str(text).map_err(|error| syntax(&error))?;
+    let mut drawn = Drawn::default();
+    let is_in_degrees = match declared(&document, &mut drawn) {
+        Err(FloorPlanError::Degrees(_)) => true,
+        other => other.map(|()| false)?,
+    };
+    without_empty_polygons(&mut document);
+    let given = serde_json::from_value(document).map_err(|error| syntax(&error))?;
+    let GeoJson::FeatureCollection(collection) = given else {
+        return Err(syntax(&"levels are features of a FeatureCollection"));
+    };
+    let described = |(k, feature): (usize, Feature)| Described {
+        number: k + 1,
+        id: feature.id.map(|id| match id {
+            Id::String(text) => text,
+            Id::Number(number) => number.to_string(),
+        }),
+        members: feature.foreign_members.unwrap_or_default(),
+        properties: feature.properties.unwrap_or_default(),
+        geometry: feature.geometry,
+    };
+    let features = collection.features.into_iter().enumerate();
+    Ok(Collection {
+        features: features.map(described).collect(),
+        is_in_degrees,
+        drawn,
+    })
 }
 
 /// Takes polygons without rings out of MultiPolygons, at any depth: the reader refuses them.

@@ -19,11 +19,14 @@
 use crate::input;
 use crate::kinds;
 mod boundary;
+mod drawn_levels;
 mod dxf;
 mod error;
 mod geojson;
 mod idle;
+mod imdf;
 mod kind;
+mod levels;
 mod on_floor;
 mod places;
 mod reading;
@@ -37,6 +40,7 @@ mod xml;
 pub use error::FloorPlanError;
 pub(crate) use idle::notes as without_effect;
 pub use kind::Kind;
+pub use levels::{LevelForm, PlanJoin, PlanLevel, PlanLevels, read_levels};
 pub use on_floor::{is_line_on_floor, is_on_floor, parts_on_floor};
 pub use places::{Place, across};
 pub use reading::Reading;
@@ -161,10 +165,10 @@ pub fn parse_wkt(text: &str) -> Result<FloorPlan, FloorPlanError> {
 }
 
 /// Applies `parse` to a file's content; errors name the file.
-fn in_file(
+fn in_file<T>(
     path: &Path,
-    parse: impl Fn(&[u8]) -> Result<FloorPlan, FloorPlanError>,
-) -> Result<FloorPlan, FloorPlanError> {
+    parse: impl Fn(&[u8]) -> Result<T, FloorPlanError>,
+) -> Result<T, FloorPlanError> {
     let within = |error: FloorPlanError| FloorPlanError::File {
         path: path.to_owned(),
         error: Box::new(error),
@@ -193,6 +197,9 @@ fn drawn(
     }
     let text = input::text_of(bytes.to_vec())
         .map_err(|error| FloorPlanError::Unreadable(error.to_string()))?;
+    if imdf::is_imdf(&text) {
+        return imdf::storey(&text, reading);
+    }
     let mut drawn = match text.trim_start().bytes().next() {
         Some(b'{') => geojson::drawn(&text, all_obstacles)?,
         Some(b'<') => xml::drawn(text.trim_start(), reading)?,

@@ -10,7 +10,7 @@ use super::kind::Kind;
 use super::shape::Shape;
 use super::units::Unit;
 
-/// How the files of `walkable_area` and `obstacles` are read: what they do not say themselves
+/// How the files of `walkable_area`, `obstacles` and `levels` are read: what they do not say themselves
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Reading {
@@ -25,8 +25,8 @@ pub struct Reading {
     /// The unit of the coordinates: `m`, `cm`, `mm`, `ft` or `in`. Default: what the file says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
-    /// The point of the file that becomes the origin, meters. Default: its own origin; for a drawing far from that, its
-    /// lower left corner.
+    /// The point of the file that becomes the origin, meters; of a file in degrees, its longitude and latitude.
+    /// Default: its own origin; for one drawing far from that and for degrees, the lower left corner.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub origin: Option<[f64; 2]>,
     /// Ends of lines this near to another line meet it, meters. Default: 0.02.
@@ -37,6 +37,10 @@ pub struct Reading {
     /// overlap.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub storey: Option<String>,
+    /// The height from one ordinal of a file's levels to the next, meters, where the levels have no `elevation`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.5, max = 100))]
+    pub storey_height: Option<f64>,
 }
 
 /// What the names of layers mean that scenarios leave out.

@@ -52,6 +52,20 @@ pub fn free(floors: &[Rings], bodies: &Rings) -> Result<Vec<Area>, FloorPlanErro
     assemble(&free, given(), tolerance).map_err(|(error, ring)| wrong(ring[0], error.to_string()))
 }
 
+/// The area that two areas share, m².
+///
+/// # Errors
+/// Those of [`free`].
+pub fn shared(one: &Area, other: &Area) -> Result<f64, FloorPlanError> {
+    let outline = |area: &Area| bounds(area.exterior.points().iter().copied()).unwrap_or_default();
+    let [[low, high], [from, to]] = [one, other].map(outline);
+    if from.x >= high.x || from.y >= high.y || low.x >= to.x || low.y >= to.y {
+        return Ok(0.0);
+    }
+    let both = free(&[rings([one]), rings([other])], &Rings::new())?;
+    Ok(both.iter().map(Area::area).sum())
+}
+
 /// The rings of `areas`: outlines counterclockwise, holes clockwise.
 pub fn rings<'a>(areas: impl IntoIterator<Item = &'a Area>) -> Rings {
     let reversed = |hole: &Ring| hole.points().iter().rev().copied().collect();

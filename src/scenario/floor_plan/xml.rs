@@ -4,6 +4,7 @@
 //! joined end to end are its outline. The walkable area is the union of all subrooms without their obstacles. The wall
 //! between two rooms is written for each of them, as a line: where both sides are floor it stays a wall.
 
+mod levels;
 mod storeys;
 
 use libm::hypot;
@@ -15,6 +16,7 @@ use super::reading::{Drawn, Reading};
 use super::shape::Shape;
 use super::thin::encloses_nothing;
 use engine::math::{Vector, sides};
+pub use levels::levels;
 use storeys::Room;
 
 /// The most nodes of a document.
@@ -30,6 +32,34 @@ type Path = Vec<[f64; 2]>;
 
 /// The rooms, obstacles, walls and doors of `text`.
 pub fn drawn(text: &str, reading: &Reading) -> Result<Drawn, FloorPlanError> {
+    read(text, |mut site| {
+        let rooms = storeys::choose(site.rooms, reading, &mut site.drawn)?;
+        let is_there = |door: &Door| {
+            rooms
+                .iter()
+                .any(|room| door.sides.iter().any(|side| room.side == *side))
+        };
+        let kept = site.doors.into_iter().filter(is_there);
+        site.drawn.shapes.extend(kept.map(Door::shape));
+        Ok(site.drawn)
+    })
+}
+
+/// What a file has.
+struct Site<'a> {
+    /// The shapes of all rooms.
+    drawn: Drawn,
+    rooms: Vec<Room>,
+    doors: Vec<Door<'a>>,
+    /// The unit of its coordinates, meters.
+    meters: f64,
+}
+
+/// Reads `text`, and applies `take` to what it has.
+fn read<T>(
+    text: &str,
+    take: impl FnOnce(Site) -> Result<T, FloorPlanError>,
+) -> Result<T, FloorPlanError> {
     let options = ParsingOptions {
         nodes_limit: MOST_NODES,
         ..ParsingOptions::default()
@@ -46,13 +76,13 @@ pub fn drawn(text: &str, reading: &Reading) -> Result<Drawn, FloorPlanError> {
     let meters = unit(root)?;
     let doors = doors(root, meters)?;
     let mut drawn = Drawn::default();
-    let mut found = Vec::new();
+    let mut rooms = Vec::new();
     for room in elements(root, "room") {
         for subroom in room.children().filter(|node| node.has_tag_name("subroom")) {
             let first = drawn.shapes.len();
             subroom_of(room, subroom, &doors, meters, &mut drawn.shapes)?;
             let shapes = first..drawn.shapes.len();
-            found.push(Room::of(room, subroom, shapes));
+            rooms.push(Room::of(room, subroom, shapes));
         }
     }
     let all = elements(root, "subroom").count();
@@ -60,15 +90,12 @@ pub fn drawn(text: &str, reading: &Reading) -> Result<Drawn, FloorPlanError> {
         let reason = format!("has {all} <subroom>, none of them directly in a <room>");
         return Err(wrong("geometry", reason));
     }
-    let rooms = storeys::choose(found, reading, &mut drawn)?;
-    let is_there = |door: &Door| {
-        rooms
-            .iter()
-            .any(|room| door.sides.iter().any(|side| room.side == *side))
-    };
-    let kept = doors.into_iter().filter(is_there);
-    drawn.shapes.extend(kept.map(Door::shape));
-    Ok(drawn)
+    take(Site {
+        drawn,
+        rooms,
+        doors,
+        meters,
+    })
 }
 
 /// Adds the floor, the walls and the obstacles of a subroom.

@@ -1,5 +1,6 @@
 //! Reading whole files and lines, with limits on their length.
 
+pub mod archive;
 mod letters;
 
 pub use letters::Letters;

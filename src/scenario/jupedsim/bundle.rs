@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::archive::{entries, is_archive};
 use crate::error::ScenarioError;
 use crate::error::quote::shown;
 use crate::input;
+use crate::input::archive::{entries, is_archive};
 
 /// The key that holds the geometry, as in the single files that JuPedSim's runner writes.
 pub const GEOMETRY: &str = "walkable_area_wkt";

@@ -4,7 +4,6 @@
 //! come into them. Here every side of such an area that borders on floor is the line of an exit. What has no
 //! counterpart is named once in a note.
 
-mod archive;
 mod bundle;
 mod fields;
 mod floor;

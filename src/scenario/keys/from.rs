@@ -37,6 +37,9 @@ pub struct FromData {
     /// With `trajectory`: its frames per second. Default: as the file says.
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub fps: Option<f64>,
+    /// With `trajectory`: of a building, the level whose people begin the scenario.
+    #[schemars(length(min = 1))]
+    pub level: Option<String>,
     /// ρ̂ of those who are there at the start, P/m². Higher than the densities around them: they feel no pressure until
     /// it has fallen to these within some tenths of a second. Default: the density by the other agents.
     #[schemars(range(min = 0, max = HIGHEST_DENSITY))]

@@ -23,6 +23,9 @@ pub struct Behavior {
     pub goal: Option<Aim>,
     /// Instead of `goal`: the name of the journey.
     pub journey: Option<String>,
+    /// In buildings: whether they may use stairs and escalators. Those who may not take ramps and lifts to an exit.
+    #[schemars(extend("default" = true))]
+    pub uses_stairs: Option<bool>,
     /// The behavior. Default: the scenario's profile.
     pub profile: Option<ProfileChoice>,
     /// Agents leave within this distance of their goal, meters. Default: they stay.

@@ -135,7 +135,7 @@ impl<'de> Deserialize<'de> for Stage {
         UntaggedEnumVisitor::new()
             .expecting(
                 "the name of a place, or a choice: one of {\"nearest\": [names]}, {\"quickest\": [names]}, \
-                 {\"fewest\": [names]} or {\"shares\": {name: weight}}",
+                 {\"fewest\": [names]}, {\"shares\": {name: weight}} or {\"lifts\": [names], \"to\": level}",
             )
             .string(|name| Ok(Self::Place(name.to_owned())))
             .map(|choice| Ok(Self::Choice(choice.deserialize()?)))
@@ -143,7 +143,7 @@ impl<'de> Deserialize<'de> for Stage {
     }
 }
 
-/// A choice between places: exactly one of these keys.
+/// A choice between places: exactly one of these keys, or `lifts` with `to`.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Choice {
@@ -160,6 +160,45 @@ pub struct Choice {
     /// At random, with these weights.
     #[schemars(extend("additionalProperties" = {"type": "number", "minimum": 0, "maximum": 1e9}))]
     pub shares: Option<BTreeMap<String, f64>>,
+    /// A ride by the lift with the nearest waiting area, of those with these names, to the level `to`.
+    #[schemars(length(min = 1), inner(length(min = 1)))]
+    pub lifts: Option<Vec<String>>,
+    /// With `lifts`: the name of the level.
+    #[schemars(length(min = 1))]
+    pub to: Option<String>,
+}
+
+/// A lift of a building.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Lift {
+    /// The name in journeys and reports.
+    #[schemars(length(min = 1))]
+    pub name: String,
+    /// The cabin: an area of the building that is a part of the floor of each level at which the lift stops.
+    pub cabin: Ring,
+    /// The names of the waiting areas before it, one on each of these levels.
+    #[schemars(length(min = 2))]
+    pub stops: Vec<String>,
+    /// How many people it takes.
+    #[schemars(range(min = 1, max = 200))]
+    pub capacity: u32,
+    /// Its speed, m/s.
+    #[serde(default = "usual_speed_of_lifts")]
+    #[schemars(range(min = 0.01, max = 30))]
+    pub speed: f64,
+    /// How long its doors take to open, and to close, seconds.
+    #[serde(default = "usual_time_of_doors")]
+    #[schemars(range(min = 0, max = 600))]
+    pub door_secs: f64,
+}
+
+fn usual_speed_of_lifts() -> f64 {
+    1.0
+}
+
+fn usual_time_of_doors() -> f64 {
+    3.0
 }
 
 /// An area in which people walk slower or faster, such as stairs, or hurry.

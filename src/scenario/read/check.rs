@@ -193,7 +193,8 @@ impl Draft {
         notes: &mut Vec<String>,
     ) -> Result<Items, Problem> {
         let (keys, behind) = (&self.keys, &scene.behind.clone());
-        scene.journeys = journeys::journeys(keys, (&scene.walls, behind), notes)?;
+        let levels = scene.levels.as_deref();
+        scene.journeys = journeys::journeys(keys, (&scene.walls, behind, levels), notes)?;
         let entered = Population::new(keys, blend, behind, scene).enter();
         let (of_people, items) =
             entered.map_err(|problem| meant::clearer(problem, &self.document))?;

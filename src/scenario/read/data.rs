@@ -9,7 +9,7 @@ use crate::error::{Problem, Under};
 use crate::file::File;
 use crate::keys::from::{FILE, FROM, FromData, Person};
 use crate::read::plans::PlanFile;
-use crate::trajectories::{ReadOptions, TOO_FAST, Tracks, UNITS, read};
+use crate::trajectories::{OnLevel, ReadOptions, TOO_FAST, Tracks, UNITS, read};
 
 /// Velocities are means from this long before to this long after, seconds, as in the measurement `line_flow`.
 const REACH: f64 = 0.2;
@@ -31,6 +31,7 @@ pub fn fill(
             ("until_secs", given.until_secs.is_some()),
             ("unit", given.unit.is_some()),
             ("fps", given.fps.is_some()),
+            ("level", given.level.is_some()),
         ] {
             if is_given {
                 let reason = "is for `trajectory`, which is not given; add it, or remove this";
@@ -49,7 +50,14 @@ pub fn fill(
     let path = folder.join(name);
     let people = people(&path, given, notes).under(FROM)?;
     if let Some(Value::Object(object)) = document.get_mut(FROM) {
-        for key in ["trajectory", "at_secs", "until_secs", "unit", "fps"] {
+        for key in [
+            "trajectory",
+            "at_secs",
+            "until_secs",
+            "unit",
+            "fps",
+            "level",
+        ] {
             object.remove(key);
         }
         let list =
@@ -66,7 +74,7 @@ pub fn tracks(path: &Path, given: &FromData) -> Result<(Tracks, f64), Problem> {
     let options = ReadOptions {
         unit: given.unit,
         fps: given.fps,
-        ..ReadOptions::default()
+        level: given.level.clone().map_or(OnLevel::Only, OnLevel::Named),
     };
     let tracks = read(path, &options)
         .map_err(|error| Problem::new("trajectory", shown_message(&in_keys(&error.to_string()))))?;
@@ -99,7 +107,10 @@ pub fn tracks(path: &Path, given: &FromData) -> Result<(Tracks, f64), Problem> {
 
 /// A message for the command line, with keys instead of options.
 fn in_keys(said: &str) -> String {
-    said.replace("--fps", "`fps`").replace("--unit", "`unit`")
+    let keys = ["fps", "unit", "level"];
+    keys.iter().fold(said.to_owned(), |said, key| {
+        said.replace(&format!("--{key}"), &format!("`{key}`"))
+    })
 }
 
 /// The people in a file: those at the time, by id, then those who appear later, by time. Adds notes on keys that

@@ -181,7 +181,7 @@ impl Inputs {
             let Some(value) = document.get(key).filter(|_| is_there) else {
                 continue;
             };
-            if value.is_string() && plans::KEYS.contains(&key.as_str()) {
+            if value.is_string() && (plans::KEYS.contains(&key.as_str()) || key == plans::LEVELS) {
                 continue; // the name of a file
             }
             let alone = without_level(json!({ key: value }));

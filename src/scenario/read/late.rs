@@ -146,12 +146,11 @@ pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
     let is_all = scene.sources.is_empty() && scene.entrances.is_empty() && last > 0.0;
     let needs = |agent: &NewAgent| {
         let group = &scene.groups[usize::from(agent.group)];
-        let distance_of = |to: Vector, nearest: &dyn Fn(Vector) -> Vector| {
-            let levels = scene.levels.as_ref();
-            let from = levels.map_or(agent.position, |levels| {
-                levels.on_level_of(to, agent.position)
-            });
-            (nearest(from) - from).norm()
+        // In a building, the agent's place on the level to which it walks.
+        let levels = scene.levels.as_ref();
+        let beside = |to: Vector| {
+            let p = agent.position;
+            levels.map_or(p, |levels| levels.on_level_of(to, p))
         };
         let distance = match group.journey {
             Some(journey) => {
@@ -161,11 +160,12 @@ pub fn short(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
                 let exits = places.filter(|place| place.is_exit());
                 let distances = exits.filter_map(|exit| {
                     let [end, _] = exit.line()?;
-                    Some(distance_of(end, &|p| exit.nearest_point(p)))
+                    let from = beside(end);
+                    Some((exit.nearest_point(from) - from).norm())
                 });
                 distances.reduce(f64::min)?
             }
-            None => distance_of(agent.goal, &|_| agent.goal) - group.removal_radius?,
+            None => (agent.goal - beside(agent.goal)).norm() - group.removal_radius?,
         };
         let speeds = group.traits.preferred_speed.as_ref();
         let drawn = speeds.map(|speed| speed.quantile(FASTEST));

@@ -9,6 +9,7 @@ use crate::error::quote::shown;
 use crate::floor_plan::{Rings, free, rings};
 use crate::keys::levels::{Join, Level, ON_LEVELS};
 use crate::read::parsed::parsed;
+use crate::read::rides;
 use crate::scene::levels::Building;
 use crate::scene::surroundings::{OBSTACLES, WALKABLE_AREA};
 use engine::geometry::Area;
@@ -71,7 +72,9 @@ pub struct SideBySide {
 pub fn side_by_side(document: &Value) -> Result<Option<SideBySide>, Problem> {
     let given = |key: &str| document.get(key).filter(|value| !is_empty(value));
     let (Some(levels), joins) = (given(LEVELS), given(JOINS)) else {
-        let problem = joins_without_levels(document).or_else(|| level_without_levels(document));
+        let problem = joins_without_levels(document)
+            .or_else(|| level_without_levels(document))
+            .or_else(|| rides::without_levels(document));
         return problem.map_or(Ok(None), Err);
     };
     for (key, reason) in REFUSED {
@@ -84,10 +87,22 @@ pub fn side_by_side(document: &Value) -> Result<Option<SideBySide>, Problem> {
     }
     let under = |key: &'static str| move |problem: Problem| problem.under(key);
     let levels: Vec<Level> = parsed(levels).map_err(under(LEVELS))?;
-    let joins: Option<Vec<Join>> = joins.map(parsed).transpose().map_err(under(JOINS))?;
-    let building = Building::new(&levels, &joins.unwrap_or_default())?;
+    let given_joins: Option<Vec<Join>> = joins.map(parsed).transpose().map_err(under(JOINS))?;
+    let joins = given_joins.unwrap_or_default();
+    let building = Building::new(&levels, &joins)?;
     check_lines(document, &building)?;
     let mut plane = document.clone();
+    let doors = building.doors_of_escalators();
+    if !doors.is_empty() {
+        if plane["doors"].is_null() {
+            plane["doors"] = json!([]);
+        }
+        // Anything else is rejected later.
+        if let Value::Array(all) = &mut plane["doors"] {
+            all.extend(doors);
+        }
+    }
+    rides::plan(&mut plane, (&levels, &joins))?;
     place(&mut plane, &building)?;
     let mut found = Laid::default();
     for number in 0..building.levels.all().len() {
@@ -299,8 +314,8 @@ impl Laid {
                 [other, one] if one == number => ([line[1], line[0]], other),
                 _ => continue,
             };
-            let seen = seen_beyond(line, own, &levels[other].floor);
-            let seen = seen.map_err(|problem| problem.under(&format!("joins[{k}].line")))?;
+            let found = seen_beyond(line, own, &levels[other].floor);
+            let seen = found.map_err(|problem| problem.under(&format!("joins[{k}].line")))?;
             for area in &seen {
                 self.floors.push(polygon(area, way));
                 let outline = area.exterior.points().iter();
@@ -386,16 +401,16 @@ fn walls_between(
             let of_join = join
                 .filter(|&join| lies_on(join))
                 .map(|join| join.map(part));
-            // Walls that end at two joins leave these alone.
-            let apart = if join.is_none() { 2.0 * THICKNESS } else { 0.0 };
-            let [from, to] = [from + apart, to - apart];
+            // Walls between what is seen beyond two joins taper to a point: their ends would narrow these joins.
+            let taper = if join.is_none() { 2.0 * THICKNESS } else { 0.0 };
             let free = of_join.map_or([f64::INFINITY; 2], |[c, d]| [c.min(d), c.max(d)]);
             for [from, to] in [[from, to.min(free[0])], [from.max(free[1]), to]] {
-                if to - from > SAME && to > from {
+                if to - from > SAME.max(2.0 * taper) {
                     let inward =
                         own_side(own, a + along * ((from + to) / 2.0), perpendicular(along));
                     let [p, q] = [from, to].map(|at| a + along * at);
-                    walls.push(vec![p, q, q + inward * THICKNESS, p + inward * THICKNESS]);
+                    let (deep, short) = (inward * THICKNESS, along * taper);
+                    walls.push(vec![p, q, q + deep - short, p + deep + short]);
                 }
             }
         }

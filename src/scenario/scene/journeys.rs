@@ -10,10 +10,12 @@ use crate::keys::limits::MOST_NUMBERED;
 use crate::keys::places;
 use crate::keys::places::Stage;
 use crate::scene::changes::changes;
+use crate::scene::lifts::lift;
 use crate::scene::places::{door, exit, queue, waypoint, zone};
 use crate::scene::waiting::waiting_area;
 use engine::geometry::Walls;
 use engine::journeys::{Choice, Journey, JourneyStage, Journeys, Kind, Place};
+use engine::levels::Levels;
 use engine::math::Vector;
 use engine::scene::RouteChoice;
 
@@ -26,17 +28,21 @@ pub const TO_EXIT: [&str; 2] = ["nearest exit", "quickest exit"];
 /// `behind` are the floors behind exits and entrances. Adds notes about waiting areas in walls.
 pub fn journeys(
     keys: &File,
-    (walls, behind): (&Walls, &Rings),
+    (walls, behind, levels): (&Walls, &Rings, Option<&Levels>),
     notes: &mut Vec<String>,
 ) -> Result<Journeys, Problem> {
     let mut found = Builder {
         walls,
         behind,
+        levels,
         notes,
         journeys: Journeys::default(),
         numbers: BTreeMap::new(),
     };
     found.add_places(keys)?;
+    for (k, given) in keys.lifts.iter().enumerate() {
+        found.add_lift(given, keys).under(&format!("lifts[{k}]"))?;
+    }
     for (k, given) in keys.journeys.iter().enumerate() {
         found.add_journey(given).under(&format!("journeys[{k}]"))?;
     }
@@ -53,6 +59,7 @@ pub fn journeys(
             stages: vec![JourneyStage {
                 choice,
                 places: exits,
+                to_level: None,
             }],
         });
     }
@@ -69,6 +76,7 @@ pub fn journeys(
 struct Builder<'a> {
     walls: &'a Walls,
     behind: &'a Rings,
+    levels: Option<&'a Levels>,
     notes: &'a mut Vec<String>,
     journeys: Journeys,
     /// The number of each place by its name.
@@ -102,6 +110,61 @@ impl Builder<'_> {
         for (k, given) in keys.doors.iter().enumerate() {
             self.add("doors", k, &given.name, door(given))?;
         }
+        Ok(())
+    }
+
+    fn add_lift(&mut self, given: &places::Lift, keys: &File) -> Result<(), Problem> {
+        let Some(levels) = self.levels else {
+            return Err(Problem::new(
+                "",
+                "there are no `levels` between which it moves",
+            ));
+        };
+        if self
+            .journeys
+            .lifts
+            .iter()
+            .any(|lift| lift.name == given.name)
+        {
+            let reason = format!(
+                "there are two lifts named `{}`; rename one",
+                shown(&given.name)
+            );
+            return Err(Problem::new("name", reason));
+        }
+        let mut stops = Vec::with_capacity(given.stops.len());
+        for (k, name) in given.stops.iter().enumerate() {
+            let place = format!("stops[{k}]");
+            let number = self.number(name).under(&place)?;
+            let waiting = match &self.journeys.places[usize::from(number)].kind {
+                Kind::Waiting(waiting) if waiting.until.is_none() && waiting.lasting.is_none() => {
+                    waiting
+                }
+                Kind::Waiting(_) => {
+                    let reason =
+                        "people wait there for the lift: leave out `until_secs` and `for_secs`";
+                    return Err(Problem::new(place, reason));
+                }
+                _ => {
+                    let reason = format!("`{}` is no waiting area", shown(name));
+                    return Err(Problem::new(place, reason));
+                }
+            };
+            let is_released = keys
+                .events
+                .iter()
+                .any(|event| event.release.as_ref() == Some(name));
+            if is_released || self.journeys.lift_at(number).is_some() {
+                let reason = format!(
+                    "`{}` is that of another lift, or an event releases it",
+                    shown(name)
+                );
+                return Err(Problem::new(place, reason));
+            }
+            stops.push((number, waiting));
+        }
+        let lift = lift(given, &stops, (self.walls, self.behind, levels))?;
+        self.journeys.lifts.push(lift);
         Ok(())
     }
 
@@ -197,7 +260,11 @@ impl Builder<'_> {
                 return Ok(JourneyStage {
                     choice: Choice::Nearest,
                     places: vec![self.visited(name)?],
+                    to_level: None,
                 });
+            }
+            Stage::Choice(choice) if choice.lifts.is_some() || choice.to.is_some() => {
+                return self.ride(choice);
             }
             Stage::Choice(choice) => choice,
         };
@@ -206,6 +273,7 @@ impl Builder<'_> {
             quickest,
             fewest,
             shares,
+            ..
         } = choice;
         let lists = [
             (Choice::Nearest, "nearest", nearest),
@@ -240,7 +308,54 @@ impl Builder<'_> {
             }
             places.push(number);
         }
-        Ok(JourneyStage { choice, places })
+        Ok(JourneyStage {
+            choice,
+            places,
+            to_level: None,
+        })
+    }
+
+    /// A ride by one of some lifts to a level.
+    fn ride(&self, choice: &places::Choice) -> Result<JourneyStage, Problem> {
+        let lists = [&choice.nearest, &choice.quickest, &choice.fewest];
+        let is_alone = lists.iter().all(|list| list.is_none()) && choice.shares.is_none();
+        let (Some(names), Some(to), true) = (&choice.lifts, &choice.to, is_alone) else {
+            return Err(Problem::new(
+                "",
+                "give `lifts` and `to`, and no other choice",
+            ));
+        };
+        let levels = self.levels.into_iter().flat_map(Levels::all);
+        let names_of_levels = || levels.clone().map(|level| level.name.as_str());
+        let Some(level) = names_of_levels().position(|name| name == to) else {
+            let near = suggestion(to, names_of_levels());
+            let reason = format!("there is no level named `{}`{near}", shown(to));
+            return Err(Problem::new("to", reason));
+        };
+        let mut places = Vec::new();
+        for (k, name) in names.iter().enumerate() {
+            let place = format!("lifts[{k}]");
+            let lifts = &self.journeys.lifts;
+            let Some(lift) = lifts.iter().find(|lift| lift.name == *name) else {
+                let near = suggestion(name, lifts.iter().map(|lift| lift.name.as_str()));
+                let reason = format!("there is no lift named `{}`{near}", shown(name));
+                return Err(Problem::new(place, reason));
+            };
+            if lift.stop_on(level as u16).is_none() {
+                let reason = format!("`{}` does not stop on `{}`", shown(name), shown(to));
+                return Err(Problem::new(place, reason));
+            }
+            let others = lift
+                .stops
+                .iter()
+                .filter(|stop| usize::from(stop.level) != level);
+            places.extend(others.map(|stop| stop.place));
+        }
+        Ok(JourneyStage {
+            choice: Choice::Nearest,
+            places,
+            to_level: Some(level as u16),
+        })
     }
 
     /// Checks that agents do not wait forever before the last stage of a journey.
@@ -260,7 +375,8 @@ impl Builder<'_> {
         };
         for (k, journey) in journeys.iter().enumerate() {
             let before_last = journey.stages.iter().rev().skip(1);
-            let mut visited = before_last.flat_map(|stage| stage.places.iter().copied());
+            let kept = before_last.filter(|stage| stage.to_level.is_none());
+            let mut visited = kept.flat_map(|stage| stage.places.iter().copied());
             if let Some(place) = visited.find(is_endless) {
                 let name = shown(&places[usize::from(place)].name);
                 let mend = "`until_secs`, `for_secs` or an event that releases it";

@@ -3,13 +3,14 @@
 use crate::error::quote::{shown, to_centimeters};
 use crate::error::{Problem, Under, suggestion};
 use crate::floor_plan::{FloorPlan, Rings, free, rings};
-use crate::keys::levels::{Join, Level, LevelKind, Speeds};
+use crate::keys::levels::{Join, Level, LevelKind, Runs, Speeds};
 use crate::keys::shapes::{Outline, Ring};
 use engine::agents::Agents;
 use engine::geometry::Area;
 use engine::levels::{FARTHEST, Level as Sheet, Levels};
-use engine::math::{Vector, direction, perpendicular};
+use engine::math::{Vector, direction, perpendicular, sides};
 use engine::scene::Scene;
+use serde_json::{Value, json};
 
 /// Levels have the same height at a join within this, meters.
 const SAME_HEIGHT: f64 = 0.05;
@@ -17,7 +18,18 @@ const SAME_HEIGHT: f64 = 0.05;
 const AT_JOIN: [f64; 9] = [0.02, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.98];
 const AT_ENDS: [f64; 2] = [0.02, 0.98];
 /// Stairs and ramps that rise more than this, meters per meter, are noted.
-const STEEP: [(LevelKind, f64); 2] = [(LevelKind::Stairs, 1.0), (LevelKind::Ramp, 0.15)];
+const STEEP: [(LevelKind, f64); 3] = [
+    (LevelKind::Stairs, 1.0),
+    (LevelKind::Ramp, 0.15),
+    (LevelKind::Escalator, 0.8),
+];
+/// The usual speed of escalators along the slope, m/s (EN 115: at most 0.5 where they rise by more than 30°).
+const BELT_SPEED: f64 = 0.5;
+/// The least speed factor on stairs and ramps.
+const SLOWEST_FACTOR: f64 = 0.01;
+const OF_ESCALATORS: &str = "`runs` and `belt_speed` are for levels of the kind `escalator`";
+/// The one-way door of an escalator lies this far behind its entrance, meters.
+const DOOR_BEHIND: f64 = 0.3;
 /// Beside a join is what lies this far from it, meters.
 const BESIDE: f64 = 1e-3;
 /// The preferred speeds on a floor, up and down stairs, seen from above, m/s (Weidmann 1993).
@@ -109,6 +121,35 @@ impl Building {
         })
     }
 
+    /// The doors that let people onto escalators at their entrances only, as keys of a file: their lines lie across the
+    /// level, from wall to wall.
+    pub fn doors_of_escalators(&self) -> Vec<Value> {
+        let numbered = self.levels.all().iter().enumerate();
+        let moving = numbered.filter(|(_, level)| level.carries != Vector::zeros());
+        let door = |(k, level): (usize, &Sheet)| {
+            let of_level = self
+                .joins
+                .iter()
+                .filter(|(_, between)| between.contains(&k));
+            let middles = of_level.map(|([a, b], _)| (a + b) / 2.0);
+            let along = |p: &Vector| level.carries.dot(p);
+            let entrance = middles.min_by(|p, q| along(p).total_cmp(&along(q)))?;
+            let ahead = direction(level.carries);
+            let line = across(
+                &level.floor,
+                entrance + ahead * DOOR_BEHIND,
+                perpendicular(ahead),
+            )?;
+            Some(json!({
+                "name": format!("onto {}", level.name),
+                "level": level.name,
+                "line": line.map(|p| [p.x, p.y]),
+                "one_way": [ahead.x, ahead.y],
+            }))
+        };
+        moving.filter_map(door).collect()
+    }
+
     /// The joins of the level of this name, each with the names of its two levels.
     pub fn joins_of<'a>(
         &'a self,
@@ -137,6 +178,31 @@ impl Building {
             )
         })
     }
+}
+
+/// The line over a floor through `p` in a direction, from edge to edge.
+fn across(floor: &[Area], p: Vector, along: Vector) -> Option<[Vector; 2]> {
+    let rings = floor.iter().flat_map(Area::rings);
+    let edges = rings.flat_map(|ring| sides(ring.points()).collect::<Vec<_>>());
+    let crossed = edges.filter_map(|(a, b)| {
+        let [left, right] = [a, b].map(|end| along.perp(&(end - p)));
+        let crosses = (left > 0.0) != (right > 0.0);
+        crosses.then(|| (a + (b - a) * (left / (left - right)) - p).dot(&along))
+    });
+    let meets: Vec<f64> = crossed.collect();
+    let [before, after] = [
+        meets
+            .iter()
+            .copied()
+            .filter(|at| *at < 0.0)
+            .reduce(f64::max),
+        meets
+            .iter()
+            .copied()
+            .filter(|at| *at >= 0.0)
+            .reduce(f64::min),
+    ];
+    Some([before?, after?].map(|at| p + along * at))
 }
 
 /// The free floor of a level.
@@ -236,6 +302,26 @@ fn not_an_edge(names: [&str; 2], [sides, ends]: [[[bool; 2]; 2]; 2]) -> Problem 
     Problem::new("line", reason)
 }
 
+/// The plane of a floor.
+fn flat(level: &Level, floor: Vec<Area>) -> Result<Sheet, String> {
+    let elevation = level.elevation.ok_or("a floor needs an `elevation`")?;
+    if level.speeds.is_some() || level.speed_factors.is_some() {
+        return Err("`speeds` and `speed_factors` are for stairs and ramps".to_owned());
+    }
+    if level.runs.is_some() || level.belt_speed.is_some() {
+        return Err(OF_ESCALATORS.to_owned());
+    }
+    Ok(Sheet {
+        name: level.name.clone(),
+        at: Vector::zeros(),
+        elevation,
+        rise: Vector::zeros(),
+        speed_factors: [1.0; 2],
+        carries: Vector::zeros(),
+        floor,
+    })
+}
+
 /// The plane of level `k`.
 fn sheet(
     k: usize,
@@ -243,20 +329,8 @@ fn sheet(
     floor: Vec<Area>,
 ) -> Result<Sheet, String> {
     let level = &levels[k];
-    let name = level.name.clone();
     if level.kind == LevelKind::Floor {
-        let elevation = level.elevation.ok_or("a floor needs an `elevation`")?;
-        if level.speeds.is_some() || level.speed_factors.is_some() {
-            return Err("`speeds` and `speed_factors` are for stairs and ramps".to_owned());
-        }
-        return Ok(Sheet {
-            name,
-            at: Vector::zeros(),
-            elevation,
-            rise: Vector::zeros(),
-            speed_factors: [1.0; 2],
-            floor,
-        });
+        return flat(level, floor);
     }
     if level.elevation.is_some() {
         return Err("stairs and ramps have the heights of the floors that they join".to_owned());
@@ -285,19 +359,52 @@ fn sheet(
     }
     let rise = normal * ((high - low) / far);
     Ok(Sheet {
-        name,
+        name: level.name.clone(),
         at: a,
         elevation: low,
         rise,
         speed_factors: speed_factors(level, rise)?,
+        carries: carries(level, rise)?,
         floor,
     })
 }
 
+/// The velocity at which an escalator carries people, seen from above, m/s.
+fn carries(level: &Level, rise: Vector) -> Result<Vector, String> {
+    let is_escalator = level.kind == LevelKind::Escalator;
+    match (level.runs, level.belt_speed) {
+        (None, None) if !is_escalator => Ok(Vector::zeros()),
+        (Some(runs), speed) if is_escalator => {
+            let along = speed.unwrap_or(BELT_SPEED) / (1.0 + rise.norm_squared()).sqrt();
+            Ok(match runs {
+                Runs::Up => direction(rise) * along,
+                Runs::Down => direction(-rise) * along,
+            })
+        }
+        (None, _) if is_escalator => {
+            Err("an escalator `runs` `up` or `down`: say which".to_owned())
+        }
+        _ => Err(OF_ESCALATORS.to_owned()),
+    }
+}
+
 /// The speeds along a slope, up and down, over that on a floor.
 fn speed_factors(level: &Level, rise: Vector) -> Result<[f64; 2], String> {
+    let least = level
+        .speed_factors
+        .map(|factors| factors[0].min(factors[1]));
+    if level.kind != LevelKind::Escalator && least.is_some_and(|least| least < SLOWEST_FACTOR) {
+        return Err(format!("`speed_factors` must be at least {SLOWEST_FACTOR}"));
+    }
     Ok(match (level.speed_factors, level.speeds, level.kind) {
         (Some(_), Some(_), _) => return Err("give `speeds` or `speed_factors`".to_owned()),
+        (None, None, LevelKind::Escalator) => [0.0; 2],
+        (_, Some(_), LevelKind::Escalator) => {
+            return Err(
+                "an escalator has `belt_speed`; `speed_factors` are those of people who walk on it"
+                    .to_owned(),
+            );
+        }
         (Some(factors), None, _) => factors,
         (None, Some(Speeds::Same), _) | (None, None, LevelKind::Ramp) => [1.0; 2],
         _ => {

@@ -16,6 +16,7 @@ pub mod jamming;
 pub mod journeys;
 mod leaving;
 pub mod levels;
+mod lifts;
 pub mod maps;
 pub mod need;
 pub mod numerics;

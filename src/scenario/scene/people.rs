@@ -233,6 +233,7 @@ impl<'a> Population<'a> {
         let Behavior {
             goal: _,
             journey: _,
+            uses_stairs: _, // buildings have turned it into a journey
             profile,
             remove_within,
             motivation,

@@ -96,12 +96,17 @@ impl<'a> Journeying<'a> {
                             name: format!("`{}`", shown(name)),
                             reached: BTreeSet::new(),
                         });
-                        for side in self.beyond(group, stand) {
+                        let sides = match self.gets_out(stage, place) {
+                            Some(p) => self.regions.nearest(p).into_iter().collect(),
+                            None => self.beyond(group, stand),
+                        };
+                        for side in sides {
                             on.reached.append(&mut self.regions.reached_from(side));
                         }
                     }
-                    let points = self.reached(group, place).map(|stand| stand.point);
-                    let points: Vec<Vector> = points.collect();
+                    let reached = self.reached(group, place).map(|stand| stand.point);
+                    let ends = reached.map(|p| self.gets_out(stage, place).unwrap_or(p));
+                    let points: Vec<Vector> = ends.collect();
                     match points.is_empty() {
                         true => _ = self.closed.entry(place).or_insert(group.point),
                         false => {
@@ -133,6 +138,15 @@ impl<'a> Journeying<'a> {
             true => stand.sides.clone(),
             false => new,
         }
+    }
+
+    /// Where people get out of the lift for which they wait at a place.
+    fn gets_out(&self, stage: &JourneyStage, place: u16) -> Option<Vector> {
+        let (scene, level) = (self.prepared.scene, stage.to_level?);
+        let (lift, _) = scene.journeys.lift_at(place)?;
+        let stop = &lift.stops[lift.stop_on(level)?];
+        let levels = scene.levels.as_ref()?;
+        Some(stop.entry + levels.way(i32::from(level)))
     }
 
     /// Checks that a group reaches a place of a stage; all of its places if people choose without looking at the way.

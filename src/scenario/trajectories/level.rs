@@ -10,6 +10,17 @@ use crate::error::suggestion;
 /// The name of the column with the names of levels.
 pub const LEVEL: &str = "level";
 
+/// The name of a level as one word, for texts whose columns are separated by blanks.
+pub fn one_word(name: &str) -> String {
+    let words: Vec<&str> = name.split_whitespace().collect();
+    words.join("_")
+}
+
+/// Whether `wanted` is the name of a level, or has underscores where this has blanks, or the other way around.
+pub fn is_named(wanted: &str, name: &str) -> bool {
+    wanted == name || one_word(wanted) == one_word(name)
+}
+
 /// The people that are read of a file with a column `level`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum OnLevel {
@@ -44,7 +55,7 @@ impl Levels {
             self.names.insert(name.to_owned());
         }
         match &self.wanted {
-            OnLevel::Named(wanted) => wanted == name,
+            OnLevel::Named(wanted) => is_named(wanted, name),
             OnLevel::Only | OnLevel::Any => true,
         }
     }
@@ -63,13 +74,13 @@ impl Levels {
             OnLevel::Named(_) if self.names.is_empty() => {
                 "it has no column `level`: leave --level out".to_owned()
             }
-            OnLevel::Named(name) if !self.names.contains(name) => {
+            OnLevel::Named(name) if !self.names.iter().any(|own| is_named(name, own)) => {
                 let near = suggestion(name, self.names.iter().map(String::as_str));
                 let known = match near.is_empty() {
                     true => format!("; there are {}", all()),
                     false => near,
                 };
-                format!("nobody is on a level named `{}`{known}", shown(name))
+                format!("no people are on a level named `{}`{known}", shown(name))
             }
             _ => return Ok(()),
         };

@@ -33,7 +33,7 @@ mod unit;
 
 pub use columns::{Column, columns};
 pub use error::ReadError;
-pub use level::OnLevel;
+pub use level::{OnLevel, one_word};
 pub use tracks::{TOO_FAST, Tracks};
 pub use unit::{UNITS, Unit};
 

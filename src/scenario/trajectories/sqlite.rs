@@ -7,7 +7,7 @@ use rusqlite::types::ValueRef;
 use rusqlite::{Connection, OpenFlags, Row as Values};
 
 use super::error::ReadError;
-use super::level::{LEVEL, Levels, OnLevel};
+use super::level::{LEVEL, Levels, OnLevel, is_named};
 use super::rows::{Key, Row};
 use super::tracks::{Contents, Entry, Tracks};
 use super::{ReadOptions, Unit, frame_rate};
@@ -162,10 +162,16 @@ fn frames_per_second(
 /// building has its own in a table `levels`.
 fn walkable(connection: &Connection, level: &OnLevel) -> rusqlite::Result<Vec<String>> {
     let of_level = match level {
-        OnLevel::Named(name) => connection
-            .prepare("SELECT wkt FROM levels WHERE name = ?")
-            .and_then(|mut query| query.query_row([name], |row| row.get(0)))
-            .ok(),
+        OnLevel::Named(wanted) => connection
+            .prepare("SELECT name, wkt FROM levels")
+            .and_then(|mut query| {
+                let rows = query.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?;
+                let mut named = rows.filter_map(Result::ok);
+                let own = named.find(|(name, _): &(String, String)| is_named(wanted, name));
+                Ok(own.map(|(_, wkt)| wkt))
+            })
+            .ok()
+            .flatten(),
         OnLevel::Only | OnLevel::Any => None,
     };
     if let Some(wkt) = of_level {

@@ -140,7 +140,8 @@ impl Floor {
     pub fn bytes(&self) -> usize {
         let corners = self.corners.iter().map(Corner::bytes).sum::<usize>();
         let lists = bytes_of(&self.routes) + bytes_of(&self.starts) + bytes_of(&self.places);
-        let plane = |sheets: &Sheets| sheets.mesh.bytes() + sheets.whole.bytes();
+        let whole = |sheets: &Sheets| sheets.whole.as_ref().map_or(0, Mesh::bytes);
+        let plane = |sheets: &Sheets| sheets.mesh.bytes() + whole(sheets);
         let plane = self.sheets.as_ref().map_or(0, plane);
         lists + bytes_of(&self.at) + self.grid.bytes() + self.mesh.bytes() + plane + corners
     }
@@ -175,11 +176,11 @@ impl Floor {
             .map_or(&self.mesh, |sheets| &sheets.mesh)
     }
 
-    /// The triangles in the plane, of several levels as their floors go on behind joins.
+    /// The triangles in the plane, of several levels as their floors go on behind joins, but for those of rooms.
     pub fn whole(&self) -> &Mesh {
-        self.sheets
-            .as_ref()
-            .map_or(&self.mesh, |sheets| &sheets.whole)
+        let sheets = self.sheets.as_ref();
+        let whole = sheets.and_then(|sheets| sheets.whole.as_ref());
+        whole.unwrap_or_else(|| self.plane())
     }
 
     /// The place in the building of somebody at `p` in the plane, meters: of one level, `p` itself.

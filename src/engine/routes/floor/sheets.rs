@@ -28,8 +28,8 @@ const INTO_WALLS: f64 = 1e-3;
 pub struct Sheets {
     /// The triangles in the plane, with the same numbers as those that are glued. Joins are walls.
     pub mesh: Mesh,
-    /// The same floors as they go on behind joins.
-    pub whole: Mesh,
+    /// The same floors as they go on behind joins; `None` in rooms, where nobody looks for narrowings.
+    pub whole: Option<Mesh>,
     /// The level of each triangle.
     pub level: Vec<usize>,
     /// The levels.
@@ -58,7 +58,7 @@ impl Sheets {
     /// By how much the way from one place in triangle `t` to another takes longer than on a floor.
     pub fn effort(&self, t: u32, [from, to]: [Vector; 2]) -> f64 {
         let level = &self.levels.all()[self.level[t as usize]];
-        1.0 / level.speed_factor(direction(to - from))
+        1.0 / level.progress(direction(to - from))
     }
 }
 
@@ -97,7 +97,11 @@ impl Mesh {
         let whole = Self::new(areas, least_width)?;
         let (glued, sheets) =
             Self::glued_with(areas, (&closed, &[]), levels, Joins::Open(least_width))?;
-        Ok((glued, Sheets { whole, ..sheets }))
+        let sheets_with = Sheets {
+            whole: Some(whole),
+            ..sheets
+        };
+        Ok((glued, sheets_with))
     }
 
     /// The same with passages and lines that are closed.
@@ -120,8 +124,8 @@ impl Mesh {
         let level: Vec<usize> = (0..mesh.triangles.len() as u32).map(on_level).collect();
         let glued = mesh.joined(&levels, &level, joins)?;
         let sheets = Sheets {
-            whole: mesh.clone(),
             mesh,
+            whole: None,
             level,
             levels,
         };

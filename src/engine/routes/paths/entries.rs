@@ -11,6 +11,9 @@ use crate::routes::floor::{Bend, Floor, Turn, View};
 /// Triangles with more entries are pruned early, to save memory.
 const MANY: u32 = 100;
 
+/// Directions are off by less than this by rounding and by the margins of bends, radians.
+const ROUNDING: f64 = 4e-6;
+
 /// The entries of all triangles. Each can be the shortest somewhere in its triangle.
 pub struct Entries<'a> {
     floor: &'a Floor,
@@ -45,12 +48,15 @@ impl<'a> Entries<'a> {
         for number in bends {
             let bend = Bend::of_index(number);
             let beyond = targets.beyond(floor, bend);
+            let along = beyond - floor.place(bend);
             let enter = |t: u32, view: &View| {
-                let bends = match bend.turn {
-                    Turn::First => view.eye.side(beyond, view.right.at) <= 0.0,
-                    Turn::Last => view.eye.side(beyond, view.left.at) >= 0.0,
+                let (end, sign) = match bend.turn {
+                    Turn::First => (view.right.at, -1.0),
+                    Turn::Last => (view.left.at, 1.0),
                 };
-                bends && entries.add(t, number as u32, view)
+                let way = end - floor.place(bend);
+                let is_beyond = sign * along.perp(&way) >= 0.0 || is_opposite(along, way);
+                is_beyond && entries.add(t, number as u32, view)
             };
             floor.look_from(bend, enter, |_, _, _| ());
         }
@@ -125,6 +131,13 @@ impl<'a> Entries<'a> {
         let found = self.found.iter().map(bytes_of).sum::<usize>();
         found + bytes_of(&self.found) + bytes_of(&self.most) + bytes_of(&self.many)
     }
+}
+
+/// Whether two directions are opposite, but for rounding. At the end of a wall without thickness, such as that between
+/// two flights of stairs that touch, routes turn from one of its sides to the other: by just as much as a half-plane.
+fn is_opposite(a: Vector, b: Vector) -> bool {
+    let dot = a.dot(&b);
+    dot < 0.0 && a.perp(&b).abs() <= ROUNDING * -dot
 }
 
 /// Computes the lengths of the routes from all bends by Dijkstra's algorithm, which starts at the bends that see the

@@ -36,7 +36,7 @@ class Page {
     requestAnimationFrame(tick);
   }
 
-  /** The color, the time and the person that the address asks for: `#t=12.5&id=17&color=speed`. */
+  /** What the address asks for, such as a time, a person, a color or a level: `#t=12.5&id=17&color=speed`. */
   open() {
     const asked = new URLSearchParams(location.hash.slice(1));
     if (asked.get("color") in this.palettes || asked.get("color") === "stage" && this.people.stages.length) {
@@ -44,6 +44,7 @@ class Page {
     }
     document.getElementById("color").value = this.color;
     this.showColors();
+    this.choose(asked.get("level"));
     this.seek(Number(asked.get("t") ?? this.scene.opens_at ?? this.time));
     if (asked.has("id")) this.follow(Number(asked.get("id")));
     else this.describe();
@@ -64,6 +65,11 @@ class Page {
     on("nearer", () => this.zoom(1.5));
     on("farther", () => this.zoom(1 / 1.5));
     on("whole", () => this.whole());
+    const levels = this.scene.levels ?? [];
+    $("levels").hidden = !levels.length;
+    for (const [name, text] of [[null, "all levels"], ...levels.map(([name]) => [name, name])]) {
+      $("levels").append(element("button", { textContent: text, onclick: () => this.choose(name) }));
+    }
     $("speed").addEventListener("change", event => this.speed = Number(event.target.value));
     const [first, last] = [this.run.times[0] ?? 0, this.run.times[this.run.last] ?? 0];
     Object.assign($("time"), { min: first, max: Math.max(last, first + 1e-9) });
@@ -146,6 +152,15 @@ class Page {
     if (!does || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     does();
+  }
+
+  /** Shows one level of a building and fades the others, or shows all. */
+  choose(name) {
+    const levels = this.scene.levels ?? [];
+    this.plan.level = levels.find(([own]) => own === name) ?? null;
+    const chosen = 1 + levels.indexOf(this.plan.level);
+    [...document.getElementById("levels").children].forEach((button, k) => button.ariaPressed = String(k === chosen));
+    this.whole();
   }
 
   zoom(factor) {

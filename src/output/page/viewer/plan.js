@@ -23,6 +23,9 @@ class Plan {
   static RIM = 0.8;
   static FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif";
   static GRAY = 0xffa29a96;
+  /** What lies beside a chosen level, and the margin around it, meters. */
+  static FADED = "rgba(252, 252, 249, 0.82)";
+  static MARGIN = 1.5;
 
   constructor(scene) {
     this.scene = scene;
@@ -31,12 +34,20 @@ class Plan {
     this.ink = this.base.getContext("2d", { alpha: false, willReadFrequently: true });
     this.pen = this.top.getContext("2d");
     this.above = document.createElement("canvas");
+    this.level = null;
     this.fit();
   }
 
-  /** Shows the whole plan. */
+  /** The corners of what is shown: of the chosen level of a building, or of the whole plan. */
+  get shown() {
+    if (!this.level) return this.scene.shown;
+    const [low, high] = this.level[1];
+    return [low.map(x => x - Plan.MARGIN), high.map(x => x + Plan.MARGIN)];
+  }
+
+  /** Shows the whole plan, or the whole of the chosen level. */
   fit() {
-    const [low, high] = this.scene.shown;
+    const [low, high] = this.shown;
     this.center = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
     this.zoom = null;
     this.resize();
@@ -44,7 +55,7 @@ class Plan {
 
   /** The number of pixels of the screen per meter, with which the whole plan is shown. */
   get fitting() {
-    const [low, high] = this.scene.shown;
+    const [low, high] = this.shown;
     return 0.95 * Math.min(this.width / (high[0] - low[0]), this.height / (high[1] - low[1]));
   }
 
@@ -222,6 +233,17 @@ class Plan {
     }
   }
 
+  /** Fades what lies beside the chosen level. */
+  fade(pen) {
+    const [low, high] = this.shown;
+    const [left, bottom] = this.toScreen(low), [right, top] = this.toScreen(high);
+    pen.beginPath();
+    pen.rect(0, 0, this.width, this.height);
+    pen.rect(left, top, right - left, bottom - top);
+    pen.fillStyle = Plan.FADED;
+    pen.fill("evenodd");
+  }
+
   /** Shows what lies above people, and lets `more` draw on it. */
   cover(more) {
     const pen = this.pen;
@@ -229,6 +251,7 @@ class Plan {
     pen.clearRect(0, 0, this.top.width, this.top.height);
     pen.drawImage(this.above, 0, 0);
     pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    if (this.level) this.fade(pen);
     more(pen);
   }
 }

@@ -8,6 +8,7 @@ pub mod moment;
 
 use super::draw::{Point, xy};
 use crate::drawing::Drawing;
+use crate::over_joins::in_building;
 use engine::breakdown::Breakdown;
 use engine::geometry::HiddenRegion;
 use engine::math::Vector;
@@ -136,7 +137,7 @@ impl Open {
             let [x, y] = xy(self.position - plane);
             *point = [point[0] + x, point[1] + y];
         }
-        drawing.in_building(&mut self.breakdown);
+        in_building(drawing.levels(), &mut self.breakdown);
         self.level = Some(drawing.level(plane).to_owned());
     }
 

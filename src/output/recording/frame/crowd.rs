@@ -90,6 +90,11 @@ impl Crowd {
                 .with_component_from_data("rest_density", halves(&rows, &snapshot.rest_densities))
                 .with_component_from_data("pressure", halves(&rows, &snapshot.pressures));
         }
+        if !snapshot.on_levels.is_empty() {
+            let number = |&i: &usize| snapshot.on_levels[i].0 as u32;
+            let levels = Arc::new(UInt32Array::from_iter_values(rows.iter().map(number)));
+            values = values.with_component_from_data("level", levels);
+        }
         if !snapshot.stages.is_empty() {
             let colors = rows.iter().map(|&i| color(snapshot.stages[i]));
             values = values.with_component::<Color>("stage_colors", colors);

@@ -89,7 +89,7 @@ fn add_names(scene: &Scene, names: &mut Names) {
         names.add(ENTITY, count, &text, (color, &spots));
     }
     for zone in &journeys.zones {
-        let text = scenery::named("zone", &scenery::zone_name(zone));
+        let text = scenery::zone_name(journeys, zone);
         let spots = labels::around(zone.area.points(), true);
         names.add(ENTITY, journeys.zones.len(), &text, (scenery::ZONE, &spots));
     }

@@ -9,8 +9,7 @@ use crate::error::quote::shown;
 use crate::floor_plan::error::FloorPlanError;
 use crate::floor_plan::reading::{Drawn, Reading};
 use crate::floor_plan::shape::Shape;
-use crate::floor_plan::unite::{free, rings};
-use engine::geometry::Area;
+use crate::floor_plan::unite::shared;
 
 /// Rooms at different heights overlap if they share at least this, m².
 const OVERLAP: f64 = 0.1;
@@ -18,17 +17,23 @@ const OVERLAP: f64 = 0.1;
 /// A subroom, with its shapes.
 pub struct Room {
     /// Its name in messages.
-    name: String,
+    pub name: String,
     /// The numbers of its room and of itself.
     pub side: [String; 2],
     /// The caption of its room.
-    storey: Option<String>,
+    pub storey: Option<String>,
     /// The height of its floor, meters; `None` for one that rises, or whose height is not given.
-    height: Option<f64>,
+    pub height: Option<f64>,
     /// Whether it is a stair.
     is_stair: bool,
+    /// Its class, in lowercase.
+    pub class: String,
+    /// Its own caption.
+    pub caption: Option<String>,
+    /// How much its floor rises along x and y, meters per meter.
+    pub rise: [f64; 2],
     /// Its shapes: first its floor.
-    shapes: Range<usize>,
+    pub shapes: Range<usize>,
 }
 
 impl Room {
@@ -51,6 +56,9 @@ impl Room {
             storey: caption(room),
             height: is_level.then_some(height),
             is_stair,
+            class,
+            caption: caption(subroom),
+            rise: [along, across],
             shapes,
         }
     }
@@ -152,15 +160,11 @@ fn refuse_overlaps(rooms: &[Room], shapes: &[Shape]) -> Result<(), FloorPlanErro
                 continue;
             }
             let [a, b] = [one, other].map(|room| &shapes[room.shapes.start]);
-            if !boxes_meet(a, b) {
-                continue;
-            }
-            let both = free(&[rings([a.area()?]), rings([b.area()?])], &Vec::new())?;
-            let shared: f64 = both.iter().map(Area::area).sum();
+            let shared = shared(a.area()?, b.area()?)?;
             if shared >= OVERLAP {
                 let reason = format!(
                     "storeys overlap in plan: {} ({}) and {} ({}) share {shared:.1} m²; a floor has no storeys: take \
-                     one by its name or height with `plan.storey`, or move them apart",
+                     all as levels with `\"levels\": \"FILE.xml\"`, or one by its name or height with `plan.storey`",
                     shown(&other.name),
                     other.height(),
                     shown(&one.name),
@@ -171,10 +175,4 @@ fn refuse_overlaps(rooms: &[Room], shapes: &[Shape]) -> Result<(), FloorPlanErro
         }
     }
     Ok(())
-}
-
-/// Whether the boxes around two areas overlap.
-fn boxes_meet(a: &Shape, b: &Shape) -> bool {
-    let [[low, high], [from, to]] = [a.bounds(), b.bounds()];
-    from.x < high.x && from.y < high.y && low.x < to.x && low.y < to.y
 }
