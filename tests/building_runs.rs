@@ -313,20 +313,18 @@ fn reports_count_the_people_on_each_level() {
     let folder = tempfile::tempdir().unwrap();
     let house = house(&folder);
     let [csv, html] = ["a.csv", "a.html"].map(|name| folder.path().join(name));
-    run(&["run", &house, "--trajectory", text(&csv)]);
+    // Every frame of the run.
+    let run_it = ["run", &house, "--trajectory", text(&csv)];
+    run(&[&run_it[..], &["--trajectory-fps", "50"]].concat());
     let output = run(&["report", &house, "--out", text(&html)]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let mut counts: BTreeMap<String, BTreeMap<u64, u64>> = BTreeMap::new();
-    let mut end = 0;
-    // Ten frames per second.
     for row in rows(&csv) {
-        let frame: u64 = row["frame"].parse().unwrap();
-        end = end.max(frame);
-        if frame.is_multiple_of(10) {
-            let level = counts.entry(row["level"].clone()).or_default();
-            *level.entry(frame / 10).or_default() += 1;
-        }
+        let level = counts.entry(row["level"].clone()).or_default();
+        let frame = row["frame"].parse().unwrap();
+        *level.entry(frame).or_default() += 1;
     }
+    let secs = |frame: u64| format!("{:.1}", frame as f64 / 50.0);
     let report = std::fs::read_to_string(&html).unwrap();
     let said = crate::common::html::rows(&report, "Levels");
     for (level, of) in &counts {
@@ -334,17 +332,25 @@ fn reports_count_the_people_on_each_level() {
         let most = of.values().max().unwrap();
         let at = of.iter().find(|(_, count)| *count == most).unwrap().0;
         let start = of.get(&0).copied().unwrap_or_default();
-        let expected = [start, *most, *at].map(|number| number.to_string());
-        assert_eq!(row[1..4], expected, "{row:?}");
-        let empty: u64 = row[4].parse().unwrap();
         let last = of.keys().last().unwrap();
-        assert!(
-            empty == last + 1 || (empty * 10).abs_diff(end) <= 5, // to whole seconds
-            "{row:?}: last seen at {last} s"
-        );
-        assert_eq!(row[5], "0");
+        let [start, most] = [start, *most].map(|count| count.to_string());
+        let expected = [start, most, secs(*at), secs(last + 1), "0".to_owned()];
+        assert_eq!(row[1..], expected, "{level}");
     }
     assert_eq!(said.len(), counts.len(), "{said:?}");
+    // The curves are steps.
+    let mut figures = pictures::figures(&report).into_iter();
+    let found = figures.find(|(_, caption)| caption.starts_with("People on each level"));
+    let (svg, _) = found.unwrap();
+    for line in svg.split("<polyline").skip(1) {
+        let (_, points) = line.split_once("points=\"").unwrap();
+        let points = points.split_once('"').unwrap().0.split_whitespace();
+        let points: Vec<_> = points.map(|point| point.split_once(',').unwrap()).collect();
+        for ends in points.windows(2) {
+            let [(x, y), (u, v)] = [ends[0], ends[1]];
+            assert!(x == u || y == v, "{ends:?}");
+        }
+    }
     // A run that ends between two seconds: the last frame counts.
     let document = std::fs::read_to_string(&house).unwrap();
     let short = document.replace("\"duration_secs\": 120", "\"duration_secs\": 12.4");

@@ -1,6 +1,8 @@
 //! Buildings: scenario files with levels and joins. What people do is recomputed from files and positions alone.
 
 use sandbox::engine::math::Vector;
+use sandbox::engine::simulation::Fault;
+use sandbox::runs::drive::{Observer, Run};
 use sandbox::scenario::Scenario;
 use serde_json::{Value, json};
 
@@ -182,4 +184,56 @@ fn a_building_written_and_read_again_is_the_same() {
     let heights = scenario.scene.levels.unwrap();
     let stairs = heights.way(1);
     assert!((heights.height(stairs + vector(12.0, 1.0)) - 1.25).abs() < 1e-9);
+}
+
+/// A corridor, and a flight up to a hall with an exit of this width.
+fn flight(kind: &Value, exit: f64) -> Value {
+    let mut document = json!({
+        "profile": "steer+sph",
+        "duration_secs": 60,
+        "levels": [
+            {"name": "ground", "elevation": 0, "walkable_area": [[[[0, 0], [24, 0], [24, 1.5], [0, 1.5]]]]},
+            {"name": "flight", "walkable_area": [[[[24, 0], [32, 0], [32, 1.5], [24, 1.5]]]]},
+            {"name": "hall", "elevation": 4, "walkable_area": [[[[32, 0], [38, 0], [38, 1.5], [32, 1.5]]]]},
+        ],
+        "joins": [
+            {"levels": ["ground", "flight"], "line": [[24, 0], [24, 1.5]]},
+            {"levels": ["flight", "hall"], "line": [[32, 0], [32, 1.5]]},
+        ],
+        "exits": [{"name": "out", "level": "hall", "line": [[38, 0.75 - exit / 2.0], [38, 0.75 + exit / 2.0]]}],
+        "stop": {"when_empty": true},
+    });
+    for (key, value) in kind.as_object().unwrap() {
+        document["levels"][1][key] = value.clone();
+    }
+    document
+}
+
+/// The lengths of the longest queues of a run.
+fn queues(document: &Value) -> Vec<u32> {
+    let mut run = Run::new(read(document)).unwrap();
+    run.drive::<Fault, dyn Observer<Fault>>(&mut [], || false)
+        .unwrap();
+    let queues = run.metrics.longest_queues(&run.simulation);
+    queues.iter().map(|queue| queue.agents).collect()
+}
+
+#[test]
+fn only_those_who_are_held_up_on_stairs_stand_in_a_queue() {
+    let stairs = json!({"kind": "stairs", "speeds": "weidmann"});
+    let escalator = json!({"kind": "escalator", "runs": "up", "belt_speed": 0.5});
+    for kind in [&stairs, &escalator] {
+        let mut document = flight(kind, 1.5);
+        let people = (0..7)
+            .map(|k| json!({"level": "ground", "position": [2.0 + 2.5 * f64::from(k), 0.75]}));
+        document["agents"] = people.collect();
+        // They walk up behind each other, slower than half of their speed on a floor.
+        assert_eq!(queues(&document), [0_u32; 0], "{kind}");
+        let mut document = flight(kind, 0.7);
+        document["crowds"] = json!([{"level": "ground", "area": [[2, 0], [23, 0], [23, 1.5], [2, 1.5]], "number": 60}]);
+        assert!(
+            queues(&document).first().is_some_and(|&most| most >= 8),
+            "{kind}"
+        );
+    }
 }

@@ -8,6 +8,8 @@ use serde::Deserialize;
 
 use crate::common::page::{Page, elements};
 use crate::common::program::{json, refused, run, run_in, run_json, stderr, text};
+use crate::common::recording::Recording;
+use crate::common::room::scenario;
 
 /// A row of a CSV file of trajectories.
 #[derive(Debug, Deserialize)]
@@ -120,6 +122,34 @@ fn parts_begin_where_the_last_one_ends_while_people_come_and_go() {
         }
     }
     assert!(rows.next().is_none());
+}
+
+#[test]
+fn pages_and_recordings_end_with_the_last_frame_of_the_run() {
+    let folder = Folder::new();
+    scenario(folder.0.path());
+    let [room, html, rrd] = ["room.json", "a.html", "a.rrd"].map(|name| folder.path(name));
+    let saves = ["--save", text(&html), "--save", text(&rrd)];
+    let run_it = ["run", text(&room), "--record-every", "1000000", "--json"];
+    let report = run_json(&[&run_it[..], &saves].concat());
+    let page = Page::read(&html);
+    let end = report["time_secs"].as_f64().unwrap();
+    assert!(end > 1.0);
+    assert_eq!(page.times.len(), 2);
+    assert_eq!(page.times[0], 0.0);
+    assert!((page.times[1] - end).abs() < 1e-6, "{:?}", page.times);
+    // People there and people who have left, as the results say.
+    assert_eq!(page.series[0], [Some(12.0), Some(0.0)]);
+    assert_eq!(page.series[1], [Some(0.0), Some(12.0)]);
+    assert_eq!(report["arrived"], 12);
+    let recording = Recording::read(&rrd);
+    let agents = recording.numbers("/stats/crowd/agents", "Scalars:scalars");
+    let last = report["frames"].as_i64().unwrap();
+    assert_eq!(agents, [(0, vec![12.0]), (last, vec![0.0])]);
+    let outcome = crate::common::html::rows(&page.html, "Outcome");
+    let time = outcome.iter().find(|row| row[0] == "simulated time [s]");
+    let rounded = (100.0 * end).round() / 100.0;
+    assert_eq!(time.unwrap()[1], rounded.to_string());
 }
 
 #[test]
@@ -318,7 +348,8 @@ fn a_full_disk_is_an_error_and_an_interrupted_run_leaves_a_whole_page() {
     let page = Page::read(&html);
     assert!(page.html.trim_end().ends_with("</html>"));
     assert!(page.html.contains("interrupted"));
-    let frames = report["frames"].as_u64().unwrap() / 5 + 1;
+    // The frame at which it was interrupted is there, too.
+    let frames = report["frames"].as_u64().unwrap().div_ceil(5) + 1;
     assert_eq!(page.times.len() as u64, frames);
     // Rows of a hundred people enter together.
     let counts: BTreeMap<usize, usize> = page

@@ -67,6 +67,7 @@ mod seeing;
 mod stability;
 mod strangers;
 mod stress;
+mod studio;
 mod study_robustness;
 mod suite_changes;
 mod suites;

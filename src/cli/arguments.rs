@@ -188,7 +188,7 @@ pub struct RecordOptions {
     /// Show the run live in the viewer at this address: rerun+http://HOST:PORT/proxy, or HOST:PORT
     #[arg(long, value_name = "URL", conflicts_with = "spawn")]
     pub connect: Option<String>,
-    /// Record every N-th frame
+    /// Record every N-th frame, and the last one
     #[arg(long, value_name = "N", default_value_t = 5, requires = "record", value_parser = every_frames)]
     pub record_every: u64,
     /// Start recording at this time, seconds

@@ -11,7 +11,7 @@ use super::update::UpdateOptions;
 use super::values::generated;
 use super::{
     accuracy, bench, calibrate, compare, convert, draw, estimate, inspect, measure, page, report,
-    reproduce, stress, suite, sweep,
+    reproduce, stress, studio, suite, sweep,
 };
 
 const EXAMPLES: &str = "\
@@ -105,6 +105,9 @@ pub enum Command {
     /// Write the document that is handed in with a run or a study: plan, results with definitions, pictures, limits
     #[command(after_help = report::EXAMPLES)]
     Report(report::ReportOptions),
+    /// Draw a floor, play it, and intervene while it runs, in the browser of this machine
+    #[command(after_help = studio::EXAMPLES)]
+    Studio(studio::StudioOptions),
     /// Make a page of a recording or of trajectories: the same as `draw RUN -o FILE.html`
     #[command(
         hide = true,

@@ -1,9 +1,9 @@
 //! `sandbox convert`: a floor plan or a scenario as JSON or GeoJSON.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::arguments::SceneOptions;
 use super::failure::Failure;
@@ -11,8 +11,8 @@ use super::inputs;
 use super::terminal::{talk, tell};
 use runs::case::Source;
 use runs::outputs::{Manner, Outputs, write_file};
+use scenario::begun;
 use scenario::floor_plan::is_plan;
-use scenario::{Draft, beginning};
 
 #[derive(Args)]
 pub struct ConvertOptions {
@@ -48,7 +48,8 @@ pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
     let mut draft = inputs::draft(&source, &options.scene, None, &mut outputs)?;
     let places = draft.places().len();
     if ending == "json" && is_plan(&options.input) {
-        draft = begun(&options.input, &draft, &options.scene, &mut outputs)?;
+        let settings = inputs::settings(&options.scene, None, &mut outputs)?;
+        draft = begun(&options.input, &draft, &settings)?;
     }
     let scenario = draft.clone().scenario()?;
     let text = match ending.as_str() {
@@ -66,22 +67,4 @@ pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
         || json!({"file": file, "places": places}),
         || format!("{file}: the floor, and {places} place(s) that the plan names\n"),
     )
-}
-
-/// A scenario with the exits and crowds of a plan.
-fn begun(
-    plan: &Path,
-    draft: &Draft,
-    scene: &SceneOptions,
-    outputs: &mut Outputs,
-) -> Result<Draft, Failure> {
-    let name = plan.file_name().unwrap_or_default().to_string_lossy();
-    let document: Value = beginning(&name, draft.places());
-    let settings = inputs::settings(scene, None, outputs)?;
-    let file = plan.with_extension("json");
-    Ok(Draft::read(
-        &document.to_string(),
-        &file.display().to_string(),
-        &settings,
-    )?)
 }

@@ -44,6 +44,7 @@ mod measure;
 mod report;
 mod reproduce;
 mod stress;
+mod studio;
 mod suite;
 mod sweep;
 
@@ -130,6 +131,7 @@ fn run(command: Command) -> Result<(), Failure> {
             page::run(&options)
         }
         Command::Report(options) => report::run(&options),
+        Command::Studio(options) => studio::run(&options),
         Command::Reproduce(options) => reproduce::run(&options),
         Command::Bench(options) => bench::run(&options),
         Command::Accuracy(options) => accuracy::run(&options),

@@ -20,7 +20,9 @@ pub struct Egress {
     /// The exits at which people have left, in the order of the scenario, with the times of all people, seconds,
     /// ascending.
     pub exits: Vec<(String, Vec<f64>)>,
-    /// The end of the run, seconds.
+    /// The number of people who are there in the last frame.
+    pub remaining: u32,
+    /// The time of the last frame, seconds.
     pub until: f64,
 }
 
@@ -51,6 +53,7 @@ impl Egress {
         Self {
             entered: frame.agents.entered(),
             exits,
+            remaining: frame.agents.count_present() as u32,
             until: frame.clock.time(),
         }
     }
@@ -67,9 +70,23 @@ impl Egress {
         times.sort_by(f64::total_cmp);
         Self {
             entered,
+            remaining: entered - times.len() as u32,
             exits: vec![("last seen".to_owned(), times)],
             until,
         }
+    }
+
+    /// A note on the people who have not left; `None` without any.
+    pub fn note(&self) -> Option<String> {
+        let people = match self.remaining {
+            0 => return None,
+            1 => "1 person is".to_owned(),
+            count => format!("{count} people are"),
+        };
+        let until = self.until;
+        Some(format!(
+            "{people} still there in the last frame, at {until:.2} s"
+        ))
     }
 
     /// The times of all people who have left, seconds, ascending.
@@ -80,7 +97,7 @@ impl Egress {
         times
     }
 
-    /// The people out, their share of all people out, and when the first one, 50 %, 95 % and the last one left; by
+    /// The people out, their share of all who entered, and when the first one, 50 %, 95 % and the last one left; by
     /// exit.
     pub fn table(&self) -> Table {
         let all = self.all();
@@ -88,7 +105,7 @@ impl Egress {
             name,
             times,
             of,
-            share: 100.0 * times.len() as f64 / all.len().max(1) as f64,
+            share: 100.0 * times.len() as f64 / f64::from(self.entered.max(1)),
         };
         let named = self.exits.iter();
         let exits =
@@ -109,7 +126,7 @@ impl Egress {
             .table()
     }
 
-    /// The number of people out over time, by exit, with the times to 50, 95 and 100 %.
+    /// The number of people out over time, by exit, with the times to 50, 95 and 100 %, and the note.
     pub fn sheet(&self, title: &str) -> Sheet {
         let all = self.all();
         let [start, end] = [0.0, self.until.max(1.0)];
@@ -134,6 +151,9 @@ impl Egress {
             }
         }
         curve(&all, Style::full(color(0), 1.6, ALL));
+        if let Some(note) = self.note() {
+            marks.push(Mark::label([end, 0.0], [-1, 1], note));
+        }
         let x = Axis::linear("time [s]", [start, 1.02 * end]);
         let top = spanned([0.0, entered].into_iter())[1];
         let y = Axis::linear("people out", [0.0, top]);

@@ -36,6 +36,7 @@ impl Line {
 }
 
 /// The state of the log.
+#[derive(Debug, Clone)]
 pub struct Events {
     /// A line on arrivals is written after this many.
     step: usize,

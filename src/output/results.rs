@@ -36,6 +36,7 @@ pub fn results(report: &Value, scenario: Option<&Scenario>) -> String {
         let value = report.get(key).filter(|value| !value.is_null())?;
         let text = match *key {
             "end" => reason(value),
+            "time_secs" => tidy(&words_of(value)),
             _ => words_of(value),
         };
         Some(((*words).to_owned(), text))

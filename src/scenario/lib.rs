@@ -65,7 +65,7 @@ pub use read::document::read as read_document;
 #[doc(hidden)]
 pub use read::draft::Draft;
 #[doc(hidden)]
-pub use read::drawing::beginning;
+pub use read::drawing::begun;
 #[doc(hidden)]
 pub use read::scenario::{read_text, shipped_text};
 #[doc(hidden)]

@@ -48,6 +48,8 @@ pub mod room;
 pub mod sheets;
 pub mod simulated;
 pub mod social;
+#[cfg(feature = "program")]
+pub mod studio;
 pub mod suite;
 #[cfg(feature = "program")]
 pub mod sweep;

@@ -175,7 +175,7 @@ impl Numbers<'_> {
 }
 
 /// The people in each frame of a block.
-fn block(bytes: &[u8], columns: usize, radius: f64) -> Vec<People> {
+pub fn block(bytes: &[u8], columns: usize, radius: f64) -> Vec<People> {
     let mut numbers = Numbers(bytes);
     let frames = numbers.number() as usize;
     let tracks = numbers.number() as usize;

@@ -8,7 +8,7 @@ use super::{DrawOptions, extension, print, refuse_settings};
 use crate::cli::failure::Failure;
 use crate::cli::inputs::{TRAJECTORY_FPS, scenario, tracks};
 use crate::cli::moment;
-use crate::cli::terminal::tell;
+use crate::cli::terminal::{talk, tell};
 use lab::egress::Egress;
 use runs::case::Source;
 use runs::drive::Run;
@@ -58,6 +58,9 @@ pub fn draw(options: &DrawOptions, out: &Path, mut outputs: Outputs) -> Result<(
     if egress.exits.iter().all(|(_, times)| times.is_empty()) {
         let run = &options.run;
         return Err(Failure::Input(format!("--egress: nobody leaves {run}")));
+    }
+    if let Some(note) = egress.note() {
+        talk(&format!("note: {note}"));
     }
     let print = print(options, false);
     egress.sheet(&title).save_as(out, &print)?;

@@ -138,10 +138,10 @@ impl RecordedFrames {
         }
     }
 
-    /// Whether the current frame is.
-    fn now(&self, simulation: &Simulation) -> bool {
+    /// Whether the current frame is. The last frame of a run always is, so that a recording ends as the results say.
+    fn now(&self, simulation: &Simulation, then: ControlFlow<End>) -> bool {
         let frame = simulation.frame().clock.frame();
-        frame >= self.from && frame.is_multiple_of(self.every)
+        frame >= self.from && (then.is_break() || frame.is_multiple_of(self.every))
     }
 }
 
@@ -198,7 +198,7 @@ impl Recording {
 impl Observer<Failure> for Recording {
     fn observe(&mut self, run: &Run, ms: f64, then: ControlFlow<End>) -> Result<(), Failure> {
         self.last = *run.simulation.frame().clock;
-        if self.due.now(&run.simulation) {
+        if self.due.now(&run.simulation, then) {
             self.recorder.log(&run.simulation, ms)?;
             self.recorded += 1;
         }
@@ -220,10 +220,7 @@ impl Observer<Failure> for Recording {
             self.recorder.note(&self.last, end).ok();
         }
         if self.recorded == 0 {
-            talk(
-                "note: no frame was recorded: the run ended before the first frame that --record-from and \
-                 --record-every select",
-            );
+            talk("note: no frame was recorded: the run ended before the time of --record-from");
         }
         match self.recorder.finish() {
             // Closing the viewer is not an error.

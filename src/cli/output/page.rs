@@ -66,7 +66,7 @@ impl PageOfRun {
 
 impl Observer<Failure> for PageOfRun {
     fn observe(&mut self, run: &Run, _: f64, then: ControlFlow<End>) -> Result<(), Failure> {
-        if self.due.now(&run.simulation) {
+        if self.due.now(&run.simulation, then) {
             let new = self.events.new_lines(&run.simulation);
             let crowd = Crowd::of(&run.simulation, self.drawing.as_ref());
             let events = (self.events.evacuated, new);

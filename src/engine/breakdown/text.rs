@@ -132,7 +132,13 @@ impl Breakdown {
             Doing::Walking => format!("walks to `{place}`"),
             Doing::Waiting {
                 since_secs,
+                lift: Some(lift),
+                ..
+            } => format!("waits for the lift `{lift}` in `{place}` since {since_secs:.2} s"),
+            Doing::Waiting {
+                since_secs,
                 until_secs,
+                lift: None,
             } => {
                 let until = until_secs.map_or("it is released".to_owned(), |t| format!("{t:.2} s"));
                 format!("waits in `{place}` since {since_secs:.2} s until {until}")

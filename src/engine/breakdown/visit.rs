@@ -38,6 +38,9 @@ pub enum Doing {
         since_secs: f64,
         /// The latest time until which it waits, seconds; `None`: until it is released.
         until_secs: Option<f64>,
+        /// The lift for which it waits.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        lift: Option<String>,
     },
     /// It stands in a queue.
     Queued {
@@ -125,6 +128,7 @@ fn doing(simulation: &Simulation, trip: &Trip) -> Doing {
         Status::Waiting { since, until, .. } => Doing::Waiting {
             since_secs: secs(since),
             until_secs: (until < u64::MAX).then(|| secs(until)),
+            lift: lift(simulation, trip),
         },
         Status::Queued {
             since,
@@ -147,6 +151,15 @@ fn doing(simulation: &Simulation, trip: &Trip) -> Doing {
         }
         Status::Finished | Status::Outside { .. } => Doing::Finished,
     }
+}
+
+/// The lift for which an agent in a waiting area waits.
+fn lift(simulation: &Simulation, trip: &Trip) -> Option<String> {
+    let journeys = &simulation.scene().journeys;
+    let journey = journeys.journeys.get(usize::from(trip.journey))?;
+    let ride = journey.stage(trip.stage).to_level;
+    let stop = ride.and_then(|_| journeys.lift_at(trip.place));
+    stop.map(|(lift, _)| lift.name.clone())
 }
 
 impl Why {

@@ -143,12 +143,19 @@ pub fn held(scenario: &Scenario, place: &Place) -> String {
             let lasting = given("waiting_areas", "for_secs").map(|secs| format!("for {secs} s"));
             let all: Vec<String> = until.into_iter().chain(lasting).collect();
             match all.is_empty() {
+                true if is_stop(&scenario.scene, place) => "until a lift takes them".to_owned(),
                 true => "to the end".to_owned(),
                 false => all.join(" and "),
             }
         }
         _ => String::new(),
     }
+}
+
+/// Whether people wait for a lift at a place.
+fn is_stop(scene: &Scene, place: &Place) -> bool {
+    let mut stops = scene.journeys.lifts.iter().flat_map(|lift| &lift.stops);
+    stops.any(|stop| scene.journeys.places[usize::from(stop.place)].name == place.name)
 }
 
 /// Where the people of a group walk.

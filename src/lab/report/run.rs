@@ -81,7 +81,7 @@ pub fn of_run(run: &Run, watched: &Watched, sources: Sources) -> Result<Document
     blocks.extend(highest(scenario, watched));
     let groups = scenario.scene.groups.iter();
     let profiles = distinct(groups.map(|group| group.blend.name.as_str()));
-    blocks.extend(limits::limits(&profiles));
+    blocks.extend(limits::limits(&[&scenario.scene], &profiles));
     blocks.extend(status::status(&profiles, changes_profile(scenario))?);
     blocks.extend(again(scenario, &summary, sources.command, sources.report));
     Ok(Document::numbered(
@@ -134,7 +134,7 @@ fn egress(simulation: &Simulation, summary: &Summary) -> Vec<Block> {
     }
     let curve = "People out over time: the number of agents that have reached their exit or goal. Dashed: when 50, \
                  95 and 100 % of the agents that entered had left.";
-    let table = "Shares are of the people who left. 50 %, 95 % and all of an exit are of the people who left there, of \
+    let table = "Shares are of all who entered. 50 %, 95 % and all of an exit are of the people who left there, of \
                  the last row of all who entered. Goals: people without an exit.";
     let first = [
         Block::heading("Egress"),

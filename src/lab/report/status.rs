@@ -65,7 +65,7 @@ pub fn status(profiles: &[&str], is_changed: bool) -> Result<Vec<Block>, LabErro
             "Values that were held out come first: nothing was fitted to them. `sandbox validate` compares flows, \
              densities and speeds with published experiments, to most of which the calibrated profiles were fitted. \
              Tolerances: 6 % for flows, 10 % for densities and speeds. `sandbox verify` runs small cases with known \
-             answers. They follow the tests of RiMEA, ISO 20414 and NIST that a flat plan allows, but were not checked \
+             answers. They follow tests of RiMEA, ISO 20414 and NIST on floors and stairs, but were not checked \
              against the texts of these guidelines. docs/findings/validation.md and docs/findings/verification.md list \
              all cases and the known misses. In version {version}:"
         )),

@@ -10,6 +10,7 @@ use crate::gallery::{color, distinct, with_legend};
 use crate::model::changes_profile;
 use crate::sweep::{Combination, Drawing, Gathered, State, readable};
 use analysis::statistics::MeanStd;
+use engine::scene::Scene;
 use output::document::{Block, Document};
 use output::plot::Sheet;
 use output::table::Table;
@@ -83,7 +84,8 @@ pub fn of_study(gathered: &Gathered, file: &Path, folder: &Path) -> Result<Docum
     }
     let groups = scenarios.iter().flat_map(|one| &one.scene.groups);
     let profiles = distinct(groups.map(|group| group.blend.name.as_str()));
-    blocks.extend(limits::limits(&profiles));
+    let scenes: Vec<&Scene> = scenarios.iter().map(|one| &one.scene).collect();
+    blocks.extend(limits::limits(&scenes, &profiles));
     blocks.extend(status::status(
         &profiles,
         scenarios.iter().any(changes_profile),

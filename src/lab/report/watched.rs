@@ -56,9 +56,7 @@ impl Watched {
     pub fn see(&mut self, simulation: &Simulation) {
         let frame = simulation.frame();
         self.passages.see(simulation);
-        let nobody = frame.agents.present().next().is_none();
-        let is_empty = nobody && !simulation.expects_agents();
-        self.levels.see(simulation, is_empty);
+        self.levels.see(simulation);
         if self.stills.is_empty() {
             self.stills.push(Still::of(simulation));
         }

@@ -1,13 +1,8 @@
-//! Blocks of frames: whole numbers in columns, as differences, and compressed.
+//! Blocks of frames: whole numbers in columns, as differences.
 //!
 //! `docs/reference/page-format.md` has the format.
 
 use std::collections::HashMap;
-
-use miniz_oxide::deflate::compress_to_vec;
-
-/// The level of compression, from 0 to 10: higher levels make the concert at most 3 % smaller and take twice as long.
-const LEVEL: u8 = 6;
 
 /// What stays constant while a person is in a block: numbers of a meaning that the scene of the page gives.
 pub type Body = [u32; 2];
@@ -87,8 +82,8 @@ impl Block {
         self.rows += 1;
     }
 
-    /// The block as compressed bytes.
-    pub fn compressed(mut self) -> Vec<u8> {
+    /// The block as bytes.
+    pub fn bytes(mut self) -> Vec<u8> {
         self.tracks.sort_by_key(|track| (track.id, track.first));
         let mut bytes = Vec::new();
         put(&mut bytes, self.frames.into());
@@ -119,7 +114,7 @@ impl Block {
                 put(&mut bytes, zigzag(rest).into());
             }
         }
-        compress_to_vec(&bytes, LEVEL)
+        bytes
     }
 
     /// The differences of a column, track by track: of each first value from the first value of the track before, and

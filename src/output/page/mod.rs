@@ -8,12 +8,16 @@
 mod block;
 mod embedded;
 mod file;
+mod frames;
+mod live;
 mod moment;
 mod options;
 mod plan;
 
 pub use embedded::EmbeddedViewer;
 pub use file::PageError;
+pub use frames::Coded;
+pub use live::Live;
 pub use moment::Moment;
 pub use options::PageOptions;
 
@@ -24,12 +28,12 @@ use serde_json::{Value, json};
 use crate::drawing::Drawing;
 use crate::picture::Picture;
 use crate::scenery;
-use block::Block;
 use engine::math::Vector;
 use figures::colors::ColorMap;
 use figures::html::{self, Head, escape};
 use figures::plot::Mark;
 use file::{PageFile, Part};
+use frames::{Code, Frames};
 use plan::{hex, millimeters};
 
 /// The unit of positions, meters: no coordinate is more than half of it off, so no position is more than 0.71 of it
@@ -44,15 +48,14 @@ pub const ACCELERATION: f64 = 0.01;
 /// The unit of radii, meters.
 const RADIUS: f64 = 0.001;
 
-/// The most frames that are compressed together, and the number of persons, summed over frames, that ends a block.
-const MOST_FRAMES: u32 = 256;
-const ROWS: usize = 1 << 20;
-
-const STYLE: &str = include_str!("viewer/page.css");
+/// The style of the viewer.
+pub const STYLE: &str = include_str!("viewer/page.css");
 /// For pages with the Rerun viewer.
 const RERUN: &str = include_str!("viewer/rerun.js");
-const BODY: &str = include_str!("viewer/page.html");
-const SCRIPT: &str = concat!(
+/// Its elements, with `{title}` and `{description}`.
+pub const BODY: &str = include_str!("viewer/page.html");
+/// Its script: it starts where the page has a scene, and else waits for another script to use it.
+pub const SCRIPT: &str = concat!(
     include_str!("viewer/data.js"),
     include_str!("viewer/plan.js"),
     include_str!("viewer/plots.js"),
@@ -63,14 +66,8 @@ const SCRIPT: &str = concat!(
 /// A page that is being written.
 pub struct Page {
     file: PageFile,
-    origin: Vector,
-    has_trips: bool,
-    has_forces: bool,
-    crowd: Block,
-    forces: Block,
-    times: Vec<f64>,
-    series: Vec<Vec<Option<f64>>>,
-    events: Vec<Value>,
+    code: Code,
+    frames: Frames,
 }
 
 impl Page {
@@ -80,31 +77,12 @@ impl Page {
     /// The file cannot be written.
     pub fn create(path: &Path, plan: &Picture, options: &PageOptions) -> Result<Self, PageError> {
         let mut file = PageFile::create(path)?;
-        let levels = plan.drawing.map_or(Vec::new(), Drawing::rectangles);
-        let plan = plan.plan();
-        let origin = plan.0[0].map(f64::floor);
-        let mut columns = vec!["x", "y", "density", "speed"];
-        let has_trips = !options.places.is_empty();
-        if has_trips {
-            columns.extend(["trip", "place"]);
-        }
-        let mut scene = options.scene(plan, origin, &columns);
-        scene["levels"] = plan::levels(&levels, origin);
+        let (code, scene) = options.coded(plan);
         file.write(Part::Text(
             options.beginning() + &html::data("scene", &scene),
         ))?;
-        let forces = 2 * options.terms.len();
-        Ok(Self {
-            file,
-            origin,
-            has_trips,
-            has_forces: forces > 0,
-            crowd: Block::new(columns.len()),
-            forces: Block::new(forces),
-            times: Vec::new(),
-            series: vec![Vec::new(); options.series.len()],
-            events: Vec::new(),
-        })
+        let frames = Frames::new(&code);
+        Ok(Self { file, code, frames })
     }
 
     /// Adds a moment, later than those before.
@@ -112,62 +90,19 @@ impl Page {
     /// # Errors
     /// An earlier part could not be written.
     pub fn add(&mut self, moment: &Moment) -> Result<(), PageError> {
-        self.add_frame(moment);
-        self.times.push(moment.crowd.time);
-        for (values, value) in self.series.iter_mut().zip(&moment.series) {
-            values.push(value.filter(|value| value.is_finite()).map(rounded));
-        }
-        let events = moment.events.iter();
-        self.events
-            .extend(events.map(|line| json!([line.time, line.text, line.level == "WARN"])));
-        if self.crowd.rows() < ROWS && self.crowd.frames() < MOST_FRAMES {
+        let coded = self.code.of(moment);
+        self.frames.add(&coded);
+        if !self.frames.is_full() {
             return Ok(());
         }
         self.write_part()?;
-        // The last frame of a block is the first of the next one.
-        self.add_frame(moment);
+        self.frames.begin_with(&coded);
         Ok(())
-    }
-
-    fn add_frame(&mut self, moment: &Moment) {
-        let crowd = moment.crowd;
-        self.crowd.begin_frame();
-        for (k, (&id, position)) in crowd.id.iter().zip(&crowd.position).enumerate() {
-            let [x, y] = [0, 1].map(|axis| whole(position[axis] - self.origin[axis], POSITION));
-            let density = known(moment.density.get(k).copied(), DENSITY);
-            let speed = known(moment.speed.get(k).copied(), SPEED);
-            let [trip, place] = moment.trips.get(k).copied().unwrap_or_default();
-            let trip = self.has_trips.then_some([trip, place]);
-            let group = moment.groups.get(k).copied().unwrap_or(0);
-            let body = [whole(crowd.radius[k], RADIUS).unsigned_abs(), group.into()];
-            let values = [x, y, density, speed].into_iter();
-            self.crowd
-                .add(id, body, values.chain(trip.into_iter().flatten()));
-        }
-        self.forces.begin_frame();
-        for (id, terms) in &moment.forces {
-            let components = terms.iter().flat_map(|term| [term.x, term.y]);
-            let values = components.map(|value| whole(value, ACCELERATION));
-            self.forces.add((*id).into(), [0, 0], values);
-        }
     }
 
     /// Writes the frames since the last part.
     fn write_part(&mut self) -> Result<(), PageError> {
-        let take = |block: &mut Block| {
-            let next = block.next();
-            std::mem::replace(block, next)
-        };
-        let crowd = take(&mut self.crowd);
-        let forces = take(&mut self.forces);
-        let blocks = match self.has_forces {
-            true => vec![crowd, forces],
-            false => vec![crowd],
-        };
-        let values: Vec<_> = self.series.iter_mut().map(std::mem::take).collect();
-        let times = std::mem::take(&mut self.times);
-        let events = std::mem::take(&mut self.events);
-        let series = json!({"times": times, "series": values, "events": events});
+        let (blocks, series) = self.frames.take();
         self.file.write(Part::Frames(blocks.into(), series))
     }
 
@@ -182,7 +117,7 @@ impl Page {
 
     /// Writes the frames that are left.
     fn flush(&mut self) -> Result<(), PageError> {
-        match self.times.is_empty() && self.events.is_empty() {
+        match self.frames.is_empty() {
             true => Ok(()),
             false => self.write_part(),
         }
@@ -207,6 +142,17 @@ impl Page {
 }
 
 impl PageOptions {
+    /// How moments in the plan of a picture become numbers, and what does not move.
+    fn coded(&self, plan: &Picture) -> (Code, Value) {
+        let levels = plan.drawing.map_or(Vec::new(), Drawing::rectangles);
+        let plan = plan.plan();
+        let origin = plan.0[0].map(f64::floor);
+        let code = Code::new(origin, self);
+        let mut scene = self.scene(plan, origin, &code.columns());
+        scene["levels"] = plan::levels(&levels, origin);
+        (code, scene)
+    }
+
     /// The file up to the plan.
     fn beginning(&self) -> String {
         let script = match self.has_viewer {
@@ -264,20 +210,4 @@ impl PageOptions {
             "series": series.map(|(plot, name, color)| json!([plot, name, hex(*color)])).collect::<Value>(),
         })
     }
-}
-
-/// The nearest whole number of units. `as` saturates, and NaN is 0.
-fn whole(value: f64, unit: f64) -> i32 {
-    (value / unit).round() as i32
-}
-
-/// One more than the nearest whole number of units; 0 if the value is unknown.
-fn known(value: Option<f64>, unit: f64) -> i32 {
-    let value = value.filter(|value| value.is_finite());
-    value.map_or(0, |value| whole(value, unit).saturating_add(1))
-}
-
-/// With five significant digits.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.4e}").parse().unwrap_or(value)
 }

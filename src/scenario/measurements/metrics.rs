@@ -1,5 +1,7 @@
 //! The measurements of one run, and what every run observes beside them.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Value, json};
 
 use super::overview::Overview;
@@ -75,6 +77,12 @@ impl Metrics {
     /// second.
     pub fn longest_queues(&self, simulation: &Simulation) -> Vec<LongestQueue> {
         self.overview.longest(simulation)
+    }
+
+    /// The agents in the queue before each place, by its number, when they were last observed: once per second. Queues
+    /// with a line are left out, and places without a queue.
+    pub fn queues(&self) -> &BTreeMap<u16, u32> {
+        self.overview.queues()
     }
 
     /// The agents that made less than [`HEADWAY`](super::HEADWAY) in [`STUCK_AFTER`](super::STUCK_AFTER) seconds of

@@ -1,5 +1,7 @@
 //! What every run observes beside its measurements: the highest density, and the longest queues.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use super::is_due;
@@ -70,6 +72,11 @@ impl Overview {
     /// The longest queue before each passage, the longest one first.
     pub fn longest(&self, simulation: &Simulation) -> Vec<LongestQueue> {
         self.queues.longest(simulation)
+    }
+
+    /// The agents in the queue before each place, by its number, when they were last observed.
+    pub fn queues(&self) -> &BTreeMap<u16, u32> {
+        self.queues.latest()
     }
 
     fn observe_density(&mut self, simulation: &Simulation) {

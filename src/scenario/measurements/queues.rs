@@ -78,6 +78,17 @@ enum Passage {
     Aim(Aim),
 }
 
+impl Passage {
+    /// The number of the place or door that it is.
+    fn place(self, openings: &Openings) -> Option<u16> {
+        match self {
+            Self::Opening(k) => openings.door(k),
+            Self::Aim(Aim::Place(number)) => Some(number),
+            Self::Aim(_) => None,
+        }
+    }
+}
+
 /// The longest queue so far before a passage.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Queue {
@@ -92,6 +103,9 @@ struct Queue {
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Queues {
     queues: Vec<Queue>,
+    /// The agents in each queue before a place when they were last observed.
+    #[serde(skip)]
+    latest: BTreeMap<u16, u32>,
     lines: Lines,
     /// They follow from the scene.
     #[serde(skip)]
@@ -134,6 +148,11 @@ impl Queues {
                 self.notice(one.passage, (one.queue as u32, now), density);
             }
         }
+        let lengths = waiting.iter().filter_map(|one| {
+            let number = one.passage.place(&openings)?;
+            Some((number, one.queue as u32))
+        });
+        self.latest = lengths.collect();
         self.openings = Some(openings);
         let places = simulation.scene().journeys.places.iter();
         let states = simulation.progress().places.iter().zip(places).zip(0..);
@@ -150,6 +169,12 @@ impl Queues {
         }
     }
 
+    /// The agents in the queue before each place, by its number, when they were last observed; places without a queue
+    /// are left out.
+    pub(super) fn latest(&self) -> &BTreeMap<u16, u32> {
+        &self.latest
+    }
+
     /// The longest queue before each passage, the longest one first.
     pub(super) fn longest(&self, simulation: &Simulation) -> Vec<LongestQueue> {
         let openings = self.openings.clone();
@@ -158,11 +183,7 @@ impl Queues {
         let mut queues: Vec<&Queue> = self.queues.iter().collect();
         queues.sort_by_key(|queue| std::cmp::Reverse(queue.agents)); // stable
         let longest = queues.into_iter().map(|queue| {
-            let number = match queue.passage {
-                Passage::Opening(k) => openings.door(k),
-                Passage::Aim(Aim::Place(number)) => Some(number),
-                Passage::Aim(_) => None,
-            };
+            let number = queue.passage.place(&openings);
             let outside = number.and_then(|number| self.lines.outside(number));
             let place = number.map(|number| &places[usize::from(number)]);
             let at = match (place, queue.passage) {

@@ -1,17 +1,21 @@
 //! A scenario's floor and places as GeoJSON, and a scenario of a plan's floor and places.
 
+use std::path::Path;
+
 use serde_json::{Value, json};
 
+use crate::error::ScenarioError;
 use crate::floor_plan::{Form, Kind, Place, encloses_nothing};
 use crate::keys::shapes::{Point, Ring};
 use crate::read::draft::Draft;
+use crate::read::setting::Setting;
 
 /// The density of crowds in areas of a plan that say no number of people, P/m².
 const DENSITY: f64 = 1.0;
 
 /// A scenario of what a plan names, as a beginning: people leave its crowds by its exits. Elements of lists are names
 /// of its places.
-pub fn beginning(plan: &str, places: &[Place]) -> Value {
+fn beginning(plan: &str, places: &[Place]) -> Value {
     let of_kind = |kind: Kind| places.iter().filter(move |place| place.kind == kind);
     let exits: Vec<&str> = of_kind(Kind::Exit)
         .map(|place| place.name.as_str())
@@ -29,6 +33,17 @@ pub fn beginning(plan: &str, places: &[Place]) -> Value {
         document["stop"] = json!({"when_empty": true});
     }
     document
+}
+
+/// A scenario with the exits and crowds of the plan at a path, which a draft has read.
+///
+/// # Errors
+/// What the plan names makes no scenario.
+pub fn begun(plan: &Path, draft: &Draft, settings: &[Setting]) -> Result<Draft, ScenarioError> {
+    let name = plan.file_name().unwrap_or_default().to_string_lossy();
+    let document = beginning(&name, draft.places());
+    let file = plan.with_extension("json");
+    Draft::read(&document.to_string(), &file.display().to_string(), settings)
 }
 
 impl Draft {

@@ -283,7 +283,11 @@ fn unused(scene: &Scene) -> Option<String> {
     let used: BTreeSet<u16> = scene.groups.iter().filter_map(|one| one.journey).collect();
     let taken = used.iter().map(|&one| &journeys.journeys[usize::from(one)]);
     let stages = taken.flat_map(|journey| &journey.stages);
-    let places: BTreeSet<u16> = stages.flat_map(|stage| stage.places.clone()).collect();
+    let stops = journeys.lifts.iter().flat_map(|lift| &lift.stops);
+    let places: BTreeSet<u16> = stages
+        .flat_map(|stage| stage.places.iter().copied())
+        .chain(stops.map(|stop| stop.place))
+        .collect();
     let given =
         journeys.journeys.iter().enumerate().filter(|(k, journey)| {
             !used.contains(&(*k as u16)) && !TO_EXIT.contains(&&*journey.name)

@@ -133,14 +133,12 @@ fn check_behind(scene: &Scene, rings: &[Ring], p: Vector) -> Result<(), Problem>
     });
     let where_to = match is_seen {
         true => "outside of this level; move it onto the floor, or name the level there",
+        false if is_solid => "outside of the walkable area; move it onto the floor",
         false => {
             "behind the line of an exit or entrance and outside of the walkable area; move it onto the floor"
         }
     };
-    let reason = format!(
-        "an agent starts at ({:.2}, {:.2}), {where_to}",
-        start.x, start.y
-    );
+    let reason = format!("an agent starts at ({:.2}, {:.2}), {where_to}", p.x, p.y);
     Err(Problem::new("", reason))
 }
 

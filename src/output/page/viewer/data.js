@@ -84,15 +84,21 @@ class Run {
   /** The most blocks that are kept decoded. */
   static MOST = 6;
 
+  constructor(scene) {
+    this.scene = scene;
+    /** What holds the blocks of people and of forces, part by part: elements of the page, or bytes. */
+    this.sources = [[], []];
+    this.kept = new Map();
+    this.times = [];
+    this.starts = [];
+    this.series = scene.series.map(() => []);
+    this.events = [];
+  }
+
+  /** The run that the page holds. */
   static async read() {
-    const run = new Run();
-    run.scene = JSON.parse(document.getElementById("scene").textContent);
-    run.elements = ["crowd", "forces"].map(name => [...document.getElementsByClassName(name)]);
-    run.kept = new Map();
-    run.times = [];
-    run.starts = [];
-    run.series = run.scene.series.map(() => []);
-    run.events = [];
+    const run = new Run(JSON.parse(document.getElementById("scene").textContent));
+    run.sources = ["crowd", "forces"].map(name => [...document.getElementsByClassName(name)]);
     for (const element of document.getElementsByClassName("series")) {
       let part;
       try {
@@ -100,12 +106,17 @@ class Run {
       } catch {
         break; // the file was cut off here
       }
-      run.starts.push(Math.max(run.times.length - 1, 0));
-      run.times.push(...part.times);
-      run.series.forEach((values, k) => values.push(...part.series[k]));
-      run.events.push(...part.events);
+      run.add(part);
     }
     return run;
+  }
+
+  /** Adds a part, which begins with the last frame of the part before unless there is a gap between them. */
+  add(part, joins = true) {
+    this.starts.push(joins ? Math.max(this.times.length - 1, 0) : this.times.length);
+    this.times.push(...part.times);
+    this.series.forEach((values, k) => values.push(...part.series[k]));
+    this.events.push(...part.events);
   }
 
   get last() {
@@ -132,21 +143,28 @@ class Run {
 
   /** A block that is decoded, or nothing; decoding then begins, and `then` is called after it. */
   block(kind, part, then = () => {}) {
-    const element = this.elements[kind][part];
-    if (!element) return null;
-    const key = 2 * part + kind;
-    const known = this.kept.get(key);
-    this.kept.delete(key);
-    this.kept.set(key, known ?? "reading");
-    if (known === undefined) {
-      const width = kind === 0 ? this.scene.columns.length : 2 * this.scene.terms.length;
-      inflated(element).then(bytes => {
-        this.kept.set(key, decoded(bytes, width));
-        then();
-      });
-      while (this.kept.size > Run.MOST) this.kept.delete(this.kept.keys().next().value);
-    }
+    const source = this.sources[kind][part];
+    if (!source) return null;
+    const known = this.kept.get(source);
+    this.keep(source, known ?? "reading");
+    if (known === undefined) this.decode(source, kind).then(then);
     return known === "reading" ? null : known ?? null;
+  }
+
+  async decode(source, kind) {
+    this.keep(source, decoded(await inflated(source), this.width(kind)));
+  }
+
+  /** Keeps a block as the last that was needed, and forgets those that were not needed for the longest time. */
+  keep(source, block) {
+    this.kept.delete(source);
+    this.kept.set(source, block);
+    while (this.kept.size > this.constructor.MOST) this.kept.delete(this.kept.keys().next().value);
+  }
+
+  /** The number of columns of people or of forces. */
+  width(kind) {
+    return kind === 0 ? this.scene.columns.length : 2 * this.scene.terms.length;
   }
 
   /** The person with an id in a frame of a block: the number of its track, or −1. */

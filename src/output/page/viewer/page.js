@@ -26,10 +26,13 @@ class Page {
     this.pointer = null;
     this.hovered = null;
     this.isDirty = true;
+    /** Ends the page, where another one takes its place. */
+    this.ending = new AbortController();
     this.setUp();
     this.plots = new Plots(run, time => this.seek(time));
     this.open();
     const tick = now => {
+      if (this.ending.signal.aborted) return;
       this.tick(now);
       requestAnimationFrame(tick);
     };
@@ -70,23 +73,34 @@ class Page {
     for (const [name, text] of [[null, "all levels"], ...levels.map(([name]) => [name, name])]) {
       $("levels").append(element("button", { textContent: text, onclick: () => this.choose(name) }));
     }
-    $("speed").addEventListener("change", event => this.speed = Number(event.target.value));
-    const [first, last] = [this.run.times[0] ?? 0, this.run.times[this.run.last] ?? 0];
-    Object.assign($("time"), { min: first, max: Math.max(last, first + 1e-9) });
+    $("speed").addEventListener("change", event => this.setSpeed(Number(event.target.value)));
     $("time").addEventListener("input", event => this.seek(Number(event.target.value)));
-    const isFew = this.run.events.length <= MARKS;
-    for (const [time, text, isWarning] of this.run.events) {
-      const mark = element("i", { title: text });
-      mark.style.left = `${100 * (time - first) / Math.max(last - first, 1e-9)}%`;
-      if (time >= first && time <= last && (isFew || isWarning)) $("marks").append(mark);
-    }
-    addEventListener("keydown", event => this.key(event));
+    this.showEnds();
+    addEventListener("keydown", event => this.key(event), { signal: this.ending.signal });
     new ResizeObserver(() => {
       this.plan.resize();
       this.plots?.draw();
       this.isDirty = true;
     }).observe($("plan"));
     this.listen($("top"));
+  }
+
+  /** The ends of the slider, and the marks at it. */
+  showEnds() {
+    const [first, last] = [this.run.times[0] ?? 0, this.run.times[this.run.last] ?? 0];
+    Object.assign(document.getElementById("time"), { min: first, max: Math.max(last, first + 1e-9) });
+    const isFew = this.run.events.length <= MARKS, marks = [];
+    for (const [time, text, isWarning] of this.run.events) {
+      if (time < first || time > last || !isFew && !isWarning) continue;
+      const mark = element("i", { title: text });
+      mark.style.left = `${100 * (time - first) / Math.max(last - first, 1e-9)}%`;
+      marks.push(mark);
+    }
+    document.getElementById("marks").replaceChildren(...marks);
+  }
+
+  setSpeed(speed) {
+    this.speed = speed;
   }
 
   /** Mouse and touch on the plan: drag, wheel and two fingers move it; a click follows a person. */
@@ -101,6 +115,8 @@ class Page {
       top.setPointerCapture(event.pointerId);
       fingers.set(event.pointerId, at(event));
       moved = 0;
+      this.press(at(event), fingers.size === 1 && event.button === 0);
+      this.isDirty = true;
     });
     top.addEventListener("pointermove", event => {
       const to = at(event), from = fingers.get(event.pointerId);
@@ -109,7 +125,7 @@ class Page {
       if (!from) return;
       moved += Math.hypot(to[0] - from[0], to[1] - from[1]);
       fingers.set(event.pointerId, to);
-      if (moved < 6) return;
+      if (this.drag(to) || moved < 6) return;
       const others = [...fingers].filter(([id]) => id !== event.pointerId).map(([, place]) => place);
       if (others.length) {
         const apart = place => Math.hypot(place[0] - others[0][0], place[1] - others[0][1]);
@@ -123,7 +139,8 @@ class Page {
     });
     const lift = event => {
       fingers.delete(event.pointerId);
-      if (event.type === "pointerup" && moved < 6) this.click(at(event));
+      if (this.release(event.type === "pointerup") || event.type !== "pointerup" || moved >= 6) return;
+      this.click(at(event));
     };
     top.addEventListener("pointerup", lift);
     top.addEventListener("pointercancel", lift);
@@ -136,6 +153,19 @@ class Page {
       this.plan.zoomBy(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015)), at(event));
       this.isDirty = true;
     }, { passive: false });
+  }
+
+  /** A pointer is pressed at a place on the screen: the only one, or one of several. */
+  press() {}
+
+  /** A pointer is dragged; whether that does something else than moving the plan. */
+  drag() {
+    return false;
+  }
+
+  /** A pointer is lifted; whether that ended something else than moving the plan. */
+  release() {
+    return false;
   }
 
   key(event) {
@@ -178,6 +208,10 @@ class Page {
     const last = this.run.times[this.run.last];
     if (playing && this.time >= last) this.time = this.run.times[0];
     this.playing = playing && this.run.last > 0;
+    this.showPlaying();
+  }
+
+  showPlaying() {
     const button = document.getElementById("play");
     button.textContent = this.playing ? "❚❚" : "▶";
     button.setAttribute("aria-label", this.playing ? "stop" : "play");
@@ -220,15 +254,19 @@ class Page {
   tick(now) {
     const passed = (now - (this.before ?? now)) / 1000;
     this.before = now;
-    if (this.playing && this.isShown) {
-      this.time += this.speed * Math.min(passed, 0.25);
-      if (this.time >= this.run.times[this.run.last]) {
-        this.time = this.run.times[this.run.last];
-        this.play(false);
-      }
-      this.isDirty = true;
-    }
+    this.advance(passed);
     if (this.isDirty) this.draw();
+  }
+
+  /** Moves on by seconds of the clock on the wall. */
+  advance(passed) {
+    if (!this.playing || !this.isShown) return;
+    this.time += this.speed * Math.min(passed, 0.25);
+    if (this.time >= this.run.times[this.run.last]) {
+      this.time = this.run.times[this.run.last];
+      this.play(false);
+    }
+    this.isDirty = true;
   }
 
   draw() {
@@ -241,20 +279,33 @@ class Page {
     if (isFirst) this.describe();
     this.chase();
     const coloring = this.people.coloring(this.color), radius = this.scene.units.radius;
-    const isCovered = this.plan.isStale || this.hovered || this.pointer || this.followed !== null || this.wasFollowed;
+    const isCovered = this.plan.isStale || this.hovered || this.hasMarks || this.hadMarks;
     this.plan.paint(disc => {
       this.people.each((x, y, row, k) => disc(x, y, block.radii[k] * radius, coloring(row)));
     });
-    this.hovered = this.pointer && this.under(this.pointer);
+    this.hovered = this.pointed;
     if (isCovered) this.plan.cover(pen => this.overlay(pen));
-    this.wasFollowed = this.followed !== null;
-    document.getElementById("clock").textContent =
-      `${this.time.toFixed(2)} / ${(this.run.times[this.run.last] ?? 0).toFixed(1)} s`;
+    this.hadMarks = this.hasMarks;
+    document.getElementById("clock").textContent = this.clock;
     // Texts that change in every frame cannot be read, and take longer than the people.
     const at = performance.now();
     if (this.playing && at - (this.told ?? 0) < TELLING) return;
     this.told = at;
     this.tell();
+  }
+
+  /** Whether something is marked above the people. */
+  get hasMarks() {
+    return this.pointer || this.followed !== null;
+  }
+
+  /** The person under the pointer. */
+  get pointed() {
+    return this.pointer && this.under(this.pointer);
+  }
+
+  get clock() {
+    return `${this.time.toFixed(2)} / ${(this.run.times[this.run.last] ?? 0).toFixed(1)} s`;
   }
 
   /** Keeps the followed person in the middle until the plan is moved by hand. */
@@ -325,8 +376,7 @@ class Page {
     const $ = id => document.getElementById(id);
     $("time").value = this.time;
     this.plots?.show(this.people.now.frame, this.time);
-    const events = this.run.events.filter(([time]) => time <= this.time + 1e-9);
-    const [time, text] = events[events.length - 1] ?? [];
+    const [time, text] = this.run.events.findLast(([time]) => time <= this.time + 1e-9) ?? [];
     $("event").textContent = text ? `${shown(time, 2)} s: ${text}` : "";
     const tip = $("tip");
     tip.hidden = !this.hovered;
@@ -354,12 +404,9 @@ class Page {
   describe() {
     const card = document.getElementById("person");
     if (this.followed === null) {
-      const ids = this.people.withForces(() => this.describe());
-      const chips = ids.map(id => element("button", { textContent: id, onclick: () => this.follow(id) }));
-      const more = ids.length ? [element("p", { textContent: "Forces are recorded for these:" }),
-        element("div", { className: "ids" }, ...chips)] : [];
       const hint = "Point at a person for the numbers. Click or tap to follow.";
-      card.replaceChildren(element("h2", { textContent: "People" }), element("p", { textContent: hint }), ...more);
+      card.replaceChildren(element("h2", { textContent: "People" }), element("p", { textContent: hint }),
+        ...this.offered());
       return;
     }
     const leave = { textContent: "×", title: "follow nobody (Esc)", onclick: () => this.follow(null) };
@@ -382,6 +429,15 @@ class Page {
     const title = forces.length ? [element("p", { textContent: "Accelerations" })] : [];
     card.replaceChildren(head, element("table", {}, ...facts.map(fact => row(...fact))), ...title,
       element("table", {}, ...forces));
+  }
+
+  /** The persons whose forces are recorded, to be followed. */
+  offered() {
+    const ids = this.people.withForces(() => this.describe());
+    if (!ids.length) return [];
+    const chips = ids.map(id => element("button", { textContent: id, onclick: () => this.follow(id) }));
+    return [element("p", { textContent: "Forces are recorded for these:" }),
+      element("div", { className: "ids" }, ...chips)];
   }
 
   showColors() {
@@ -414,6 +470,7 @@ class Page {
 }
 
 addEventListener("DOMContentLoaded", async () => {
+  if (!document.getElementById("scene")) return; // another script uses what is above
   try {
     const page = new Page(await Run.read());
     globalThis.sandboxPage = page;

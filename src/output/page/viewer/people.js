@@ -20,13 +20,15 @@ class People {
   /** Goes to a time: finds its block, the frame in it, and the part of the way to the next frame. */
   goTo(time) {
     const { times, last } = this.run;
-    const frame = Math.min(this.run.frameAt(time), Math.max(last - 1, 0));
+    const frame = this.run.frameAt(time);
     const part = this.run.partOf(frame);
     const block = this.run.block(0, part, this.again);
     // The next block is decoded before it is needed.
     if (block && part + 1 < this.run.starts.length) this.run.block(0, part + 1);
-    const duration = frame < last ? times[frame + 1] - times[frame] : 1;
-    const way = frame < last ? (time - times[frame]) / duration : 0;
+    // Before a gap in the recording, people stay where they are.
+    const goesOn = frame < last && block && frame + 1 - this.run.starts[part] < block.frames;
+    const duration = goesOn ? times[frame + 1] - times[frame] : 1;
+    const way = goesOn ? (time - times[frame]) / duration : 0;
     const here = Math.abs(way - 1) < 1e-6 ? [frame + 1, 0] : [frame, Math.min(Math.max(way, 0), 1)];
     this.now = { block, part, frame: here[0], way: here[1], inside: here[0] - this.run.starts[part], duration };
     return block;

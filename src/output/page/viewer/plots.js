@@ -30,14 +30,25 @@ class Plots {
   /** Plots of the series of a run; a click calls `seek` with its time. */
   constructor(run, seek) {
     this.run = run;
+    this.seek = seek;
+    this.build();
+  }
+
+  /** The series that have a value. */
+  get known() {
+    const isKnown = values => values.some(value => value !== null);
+    return this.run.scene.series
+      .map(([plot, label, color], k) => ({ plot, label, color, values: this.run.series[k] }))
+      .filter(one => isKnown(one.values));
+  }
+
+  build() {
     this.plots = [];
-    const names = [...new Set(run.scene.series.map(series => series[0]))];
+    const known = this.known, names = [...new Set(known.map(one => one.plot))];
     const place = document.getElementById("plots");
+    place.replaceChildren();
     for (const name of names) {
-      const series = run.scene.series
-        .map(([plot, label, color], k) => ({ plot, label, color, values: run.series[k] }))
-        .filter(one => one.plot === name && one.values.some(value => value !== null));
-      if (!series.length) continue;
+      const series = known.filter(one => one.plot === name);
       const legend = element("div", { className: "legend" });
       for (const one of series) {
         one.value = element("b");
@@ -52,7 +63,7 @@ class Plots {
         const { left, width } = canvas.getBoundingClientRect();
         const part = (event.clientX - left - Plots.LEFT) / (width - Plots.LEFT);
         const [first, last] = this.ends;
-        seek(first + Math.min(Math.max(part, 0), 1) * (last - first));
+        this.seek(first + Math.min(Math.max(part, 0), 1) * (last - first));
       };
       frame.addEventListener("pointerdown", event => {
         frame.setPointerCapture(event.pointerId);
@@ -65,7 +76,7 @@ class Plots {
   }
 
   get ends() {
-    return [this.run.times[0], this.run.times[this.run.last]];
+    return [this.run.times[0] ?? 0, this.run.times[this.run.last] ?? 0];
   }
 
   draw() {

@@ -1,0 +1,188 @@
+//! What pages draw: checks of a scenario, files that are opened, examples.
+
+use std::path::Path;
+
+use runs::case::Source;
+use scenario::floor_plan::is_plan;
+use scenario::{Draft, Scenario, begun, built_in};
+use serde_json::{Value, json};
+
+use crate::answer::Refusal;
+
+/// An example on the first page.
+struct Example {
+    name: &'static str,
+    title: &'static str,
+    /// Its files among those that are built into the program, the scenario first.
+    files: &'static [&'static str],
+}
+
+const EXAMPLES: [Example; 4] = [
+    Example {
+        name: "evacuation",
+        title: "The paper's evacuation",
+        files: &["evacuation.json"],
+    },
+    Example {
+        name: "concert",
+        title: "A concert, and its wave",
+        files: &["studio/concert.json"],
+    },
+    Example {
+        name: "office",
+        title: "An office floor",
+        files: &["office.json", "office.geojson"],
+    },
+    Example {
+        name: "empty",
+        title: "An empty floor",
+        files: &[],
+    },
+];
+
+/// The examples: name, title and description.
+///
+/// # Errors
+/// One of them cannot be read.
+pub fn examples() -> Result<Value, Refusal> {
+    let one = |example: &Example| -> Result<Value, Refusal> {
+        let document = example.document()?;
+        let description = document["description"].as_str().unwrap_or_default();
+        Ok(json!({"name": example.name, "title": example.title, "description": description}))
+    };
+    EXAMPLES.iter().map(one).collect()
+}
+
+/// The document of an example, which needs no other file.
+///
+/// # Errors
+/// There is no such example.
+pub fn example(name: &str) -> Result<Value, Refusal> {
+    let found = EXAMPLES.iter().find(|example| example.name == name);
+    found
+        .ok_or_else(|| Refusal::with(404, format!("{name}: there is no such example")))?
+        .document()
+}
+
+impl Example {
+    fn document(&self) -> Result<Value, Refusal> {
+        let texts = self.files.iter().map(|file| {
+            let path = Path::new(file);
+            let text = built_in(path).map(str::as_bytes);
+            text.map(|text| (path, text))
+        });
+        let texts: Option<Vec<_>> = texts.collect();
+        let texts = texts.ok_or_else(|| Refusal::with(500, "an example is missing"))?;
+        match texts.as_slice() {
+            [] => Ok(json!({
+                "name": "drawing", "profile": "steer+sph", "duration_secs": 600, "stop": {"when_empty": true},
+            })),
+            files => Ok(read(files)?.0),
+        }
+    }
+}
+
+/// The document of the first of some files, and the notes on it.
+fn read(files: &[(&Path, &[u8])]) -> Result<(Value, Vec<String>), Refusal> {
+    let unwritten = |error: std::io::Error| Refusal::with(500, error.to_string());
+    let folder = tempfile::tempdir().map_err(unwritten)?;
+    let mut paths = Vec::new();
+    for (name, content) in files {
+        let path = folder.path().join(name.file_name().unwrap_or_default());
+        std::fs::write(&path, content).map_err(unwritten)?;
+        paths.push(path);
+    }
+    let place = format!("{}/", folder.path().display());
+    let plain = |text: String| match text.replace(&place, "") {
+        text if text.contains("cannot be read: No such file") => format!(
+            "{text}: it is another file; `sandbox convert` writes a scenario that needs no other"
+        ),
+        text => text,
+    };
+    let first = paths.swap_remove(0);
+    let (document, notes) = whole(&Source::at(first)).map_err(|refusal| Refusal {
+        reason: plain(refusal.reason),
+        message: plain(refusal.message),
+        ..refusal
+    })?;
+    Ok((document, notes.into_iter().map(plain).collect()))
+}
+
+/// The document of a scenario, which needs no other file, and the notes on it. Of a floor plan, a scenario with the
+/// exits and crowds that it names.
+///
+/// # Errors
+/// It cannot be read.
+pub fn whole(source: &Source) -> Result<(Value, Vec<String>), Refusal> {
+    let (text, file) = source.text()?;
+    let mut draft = Draft::read(&text, &file, &[])?;
+    if let Source::File(path) = source
+        && is_plan(path)
+    {
+        draft = begun(path, &draft, &[])?;
+    }
+    let scenario = draft.scenario()?;
+    Ok((scenario.document, scenario.notes))
+}
+
+/// The document of a file that a page has opened.
+///
+/// # Errors
+/// It cannot be read.
+pub fn opened(name: &str, content: &[u8]) -> Result<Value, Refusal> {
+    let path = Path::new(name);
+    let stem = path.file_stem();
+    let stem = stem.ok_or_else(|| Refusal::wrong("name: give the name of the file"))?;
+    let (mut document, notes) = read(&[(path, content)])?;
+    if document.get("name").is_none() {
+        document["name"] = stem.to_string_lossy().into();
+    }
+    Ok(json!({"document": document, "notes": notes}))
+}
+
+/// A scenario from a document that needs no other file, if its run fits into `memory` bytes.
+///
+/// # Errors
+/// The first problem, with its place.
+pub fn scenario(document: &Value, memory: Option<u64>) -> Result<Scenario, Refusal> {
+    names_no_file(document)?;
+    let name = document["name"].as_str().unwrap_or("drawing");
+    let draft = Draft::read(&document.to_string(), &format!("{name}.json"), &[])?;
+    Ok(draft.within(memory, 0)?.0)
+}
+
+/// Whether a drawing can be played: its first problem, the notes on it, and the number of people at the start.
+pub fn check(document: &Value, memory: Option<u64>) -> Value {
+    match scenario(document, memory) {
+        Ok(scenario) => json!({
+            "problem": null, "notes": scenario.notes, "people": scenario.scene.agents.len(),
+        }),
+        Err(refusal) => json!({"problem": refusal.document(), "notes": [], "people": null}),
+    }
+}
+
+/// Pages bring all that they need: files of this machine are not theirs to read.
+fn names_no_file(document: &Value) -> Result<(), Refusal> {
+    const PLANS: [&str; 2] = ["walkable_area", "obstacles"];
+    let is_name = |path: &str| document.pointer(path).is_some_and(Value::is_string);
+    let levels = document["levels"].as_array().map_or(0, Vec::len);
+    let of_levels = (0..levels).flat_map(|k| PLANS.map(|key| format!("levels/{k}/{key}")));
+    let all = PLANS.map(str::to_owned).into_iter().chain(of_levels);
+    let mut all = all.chain(["levels".to_owned(), "from/trajectory".to_owned()]);
+    let Some(path) = all.find(|path| is_name(&format!("/{path}"))) else {
+        return Ok(());
+    };
+    let path = path.replace('/', ".");
+    let reason = "a drawing has no other files; open the file itself";
+    Err(Refusal {
+        status: 422,
+        message: format!("{path}: {reason}"),
+        path,
+        reason: reason.to_owned(),
+    })
+}
+
+/// The schema of scenario files.
+pub fn schema() -> Value {
+    scenario::schema()
+}

@@ -1,0 +1,407 @@
+/* The drawing: the document, its history, what is selected, and the checks by the program. */
+
+class Drawing {
+  /** The most steps that can be undone. */
+  static MOST_STEPS = 200;
+  /** The time after a change until the program checks the drawing, milliseconds. */
+  static CHECKING = 300;
+  static STORED = "studio.document";
+  /** Changes of the same thing within this time are one step of the history, milliseconds. */
+  static JOINING = 1000;
+  /** People of the default size that surely find room, per square meter. */
+  static FIT = 2.5;
+
+  constructor(studio) {
+    this.studio = studio;
+    this.document = {};
+    this.shapes = [];
+    this.shown = [];
+    this.version = 0;
+    this.level = null;
+    this.selected = this.corner = this.problem = null;
+    this.undone = [];
+    this.done = [];
+    this.copied = null;
+    this.sheet = new Sheet(this);
+    this.snapping = new Snapping(this);
+    this.draft = new Draft(this);
+    this.underlay = new Underlay(this);
+    this.elements = new Elements(this);
+    this.form = new Forms(this);
+    this.hand = new Hand(this);
+    const on = (id, does) => document.getElementById(id).addEventListener("click", does);
+    on("draw-undo", () => this.undo());
+    on("draw-redo", () => this.redo());
+    on("draw-play", () => this.play());
+    on("draw-problem", () => this.showProblem());
+    on("draw-mark", () => this.showProblem());
+    document.getElementById("draw-level").addEventListener("change", event => this.chooseLevel(event.target.value));
+    this.draft.choose("select", true);
+  }
+
+  /* The document. */
+
+  /** Draws another document; undoing brings the one before back. */
+  open(document) {
+    if (this.shapes.length) this.keep(JSON.stringify(this.document));
+    this.document = document;
+    this.token = null;
+    this.level = document.levels?.[0]?.name ?? null;
+    this.select(null);
+    this.problem = null;
+    this.refresh();
+    this.sheet.fit();
+    this.draft.choose(this.shapes.length ? "select" : "room");
+  }
+
+  /** Changes the document; changes with the same `token` one soon after the other are undone together. */
+  change(does, token = null) {
+    const before = JSON.stringify(this.document), now = performance.now();
+    does(this.document);
+    const isJoined = token !== null && token === this.token && now - this.changed < Drawing.JOINING;
+    [this.token, this.changed] = [token, now];
+    if (!isJoined) this.keep(before);
+    this.sheet.isWhole = false;
+    this.studio.say("");
+    this.refresh();
+  }
+
+  /** Keeps a state of the document in the history. */
+  keep(before) {
+    this.done.push(before);
+    if (this.done.length > Drawing.MOST_STEPS) this.done.shift();
+    this.undone = [];
+  }
+
+  undo() {
+    this.restore(this.done, this.undone);
+  }
+
+  redo() {
+    this.restore(this.undone, this.done);
+  }
+
+  restore(from, to) {
+    if (!from.length) return;
+    to.push(JSON.stringify(this.document));
+    this.document = JSON.parse(from.pop());
+    this.token = null;
+    this.refresh();
+  }
+
+  /** Takes over a change of the document. */
+  refresh() {
+    this.read();
+    this.elements.show();
+    this.form.show();
+    this.studio.showName();
+    document.getElementById("draw-undo").disabled = !this.done.length;
+    document.getElementById("draw-redo").disabled = !this.undone.length;
+    this.showLevels();
+    this.showEmpty();
+    this.store();
+    clearTimeout(this.checking);
+    this.checking = setTimeout(() => this.check(), Drawing.CHECKING);
+    this.showAll();
+  }
+
+  /** Finds the elements of the document again; the one with the path of the selected one stays selected. */
+  read() {
+    this.version++;
+    this.shapes = shapesOf(this.document);
+    this.shown = this.shapes.filter(shape => shape.isOn(this.level));
+    this.selected = this.shapes.find(shape => shape.text === this.selected?.text) ?? null;
+    if (!this.selected) this.corner = null;
+  }
+
+  /** Keeps the document for a reload of the page. */
+  store() {
+    try {
+      sessionStorage.setItem(Drawing.STORED, JSON.stringify(this.document));
+    } catch {
+      this.say("The drawing is too large to survive a reload of the page: save it.");
+    }
+  }
+
+  /* Elements. */
+
+  /** Adds the element that a tool made of points. */
+  add(tool, points) {
+    const { document } = this, field = id => Number(globalThis.document.getElementById(id).value);
+    const thickness = Math.min(Math.max(field("draw-thickness") || 0, 0), 10);
+    const options = { document, thickness, number: this.numberIn(points, field("draw-number")) };
+    const [list, made] = PENCILS[tool].make(points, options);
+    let path = [list];
+    this.change(document => {
+      if (list === "goal") {
+        document.goal = made;
+        return;
+      }
+      if (list === "doors") made.line = this.cut(made.line);
+      const isFloor = ["walkable_area", "obstacles"].includes(list);
+      if (this.level && !isFloor) (list === "measurements" ? Object.values(made)[0] : made).level = this.level;
+      const level = this.levelAt;
+      const owner = level >= 0 && isFloor ? ["levels", level, list] : [list];
+      const elements = valueAt(document, owner) ?? [];
+      elements.push(made);
+      setAt(document, owner, elements);
+      path = [...owner, elements.length - 1, ...list === "measurements" ? [Object.keys(made)[0]] : []];
+    });
+    this.select(pathText(path));
+    if (!PENCILS[tool].stays) this.draft.choose("select");
+  }
+
+  /** The number of the level that is drawn, or -1. */
+  get levelAt() {
+    return (this.document.levels ?? []).findIndex?.(level => level.name === this.level) ?? -1;
+  }
+
+  /** The number of people that is asked for, or fewer where they find no room. */
+  numberIn(area, asked) {
+    const most = Math.floor(Drawing.FIT * Math.abs(twiceArea(area)) / 2);
+    return Math.max(Math.min(Math.round(asked) || 1, most), 1);
+  }
+
+  /** Opens the straight wall along which a door lies; the line of the door, in its middle. */
+  cut(line) {
+    const level = this.levelAt, path = level >= 0 ? ["levels", level, "obstacles"] : ["obstacles"];
+    const walls = valueAt(this.document, path);
+    if (!Array.isArray(walls)) return line;
+    for (const [k, wall] of walls.entries()) {
+      const found = opening(wall, line, 2 * Snapping.EDGE / this.sheet.scale);
+      if (!found) continue;
+      walls.splice(k, 1, ...found.walls);
+      return found.line;
+    }
+    return line;
+  }
+
+  select(text) {
+    const before = this.selected;
+    this.selected = this.shapes.find(shape => shape.text === text) ?? null;
+    if (this.selected && !this.selected.isOn(this.level)) this.chooseLevel(this.selected.levels[0]);
+    if (before?.text !== this.selected?.text) this.corner = null;
+    this.elements?.show();
+    this.form?.show();
+    this.showAll();
+  }
+
+  /** Removes the selected element, or its chosen corner. */
+  remove() {
+    const { selected, corner } = this;
+    if (!selected) return;
+    const stroke = corner && selected.strokes.find(({ path }) => pathText(path) === corner.path);
+    if (stroke?.grows && stroke.points.length > stroke.least) {
+      this.change(() => stroke.points.splice(corner.at, 1));
+      this.corner = null;
+      this.showAll();
+      return;
+    }
+    this.change(document => {
+      setAt(document, selected.whole, undefined);
+      const [list] = selected.whole;
+      if (Array.isArray(document[list]) && !document[list].length) delete document[list];
+    });
+    this.select(null);
+  }
+
+  copy() {
+    const { selected } = this;
+    if (!selected || !selected.list) return;
+    const element = structuredClone(valueAt(this.document, selected.whole));
+    this.copied = { list: selected.whole.slice(0, -1), element };
+    this.say(`${selected.name} is copied; Ctrl+V adds it.`);
+  }
+
+  /** Adds what was copied, beside where it was. */
+  paste() {
+    if (!this.copied) return;
+    const { list, element } = structuredClone(this.copied), at = valueAt(this.document, list)?.length ?? 0;
+    if (element.name) element.name = newName(this.document, element.name.replace(/ \d+$/, ""));
+    this.change(document => {
+      setAt(document, list, [...valueAt(document, list) ?? [], element]);
+      const inner = list[0] === "measurements" ? [Object.keys(element)[0]] : [];
+      this.select(null);
+      this.read();
+      const made = this.shapes.find(shape => shape.text === pathText([...list, at, ...inner]));
+      made?.moveFrom(made.places.map(place => [...place]), [2 * this.sheet.step, -2 * this.sheet.step]);
+      this.selected = made ?? null;
+    });
+    this.copied = { list, element: structuredClone(element) };
+  }
+
+  duplicate() {
+    const { copied } = this;
+    this.copy();
+    this.paste();
+    this.copied = copied ?? this.copied;
+  }
+
+  /** Moves the selected element, or its chosen corner, by steps of the grid. */
+  nudge(way, count) {
+    const { selected, corner, sheet } = this, by = way.map(x => x * count * sheet.step);
+    if (!selected) {
+      sheet.moveBy(-way[0] * 40, way[1] * 40);
+      return;
+    }
+    const stroke = corner && selected.strokes.find(({ path }) => pathText(path) === corner.path);
+    this.change(() => {
+      if (stroke) selected.grip(stroke, corner.at)(stroke.points[corner.at].map((x, axis) => clean(x + by[axis])));
+      else selected.moveFrom(selected.places.map(place => [...place]), by);
+    }, `nudge ${selected.text} ${corner?.path} ${corner?.at}`);
+  }
+
+  /** Chooses the next corner of the selected element, for the keys. */
+  nextCorner() {
+    const corners = (this.selected?.strokes ?? [])
+      .flatMap(({ path, points }) => points.map((_, at) => ({ path: pathText(path), at })));
+    const isSame = ({ path, at }) => path === this.corner?.path && at === this.corner?.at;
+    this.corner = corners[corners.findIndex(isSame) + 1] ?? null;
+    this.showAll();
+  }
+
+  get selectedHint() {
+    const { corner, selected } = this;
+    if (!selected.strokes.length) return `${selected.name}: its settings are beside the drawing.`;
+    const part = corner ? "this corner" : "it";
+    const moves = `drag or arrow keys move ${part}, Delete removes ${part}`;
+    const grows = selected.strokes.some(stroke => stroke.grows) ? " Double click on an edge: another corner." : "";
+    return `${selected.name}: ${moves}. Enter: next corner.${grows} Ctrl+D copies.`;
+  }
+
+  /* Checks. */
+
+  /** Asks the program for the first problem of the drawing, and shows it. */
+  async check() {
+    const { version } = this;
+    let found;
+    try {
+      found = await ask("check", this.document);
+    } catch (error) {
+      found = { problem: { path: error.path ?? "", message: this.studio.words(error) }, notes: [] };
+    }
+    if (version !== this.version) return;
+    this.problem = found.problem;
+    this.showFound(found);
+  }
+
+  showFound({ problem, notes, people }) {
+    const line = document.getElementById("draw-problem");
+    line.classList.toggle("wrong", Boolean(problem));
+    const count = Number.isFinite(people) ? `, ${people} ${people === 1 ? "person" : "people"} at the start` : "";
+    const { wrong } = this, said = wrong && problem.reason ? `${wrong.name}: ${problem.reason}` : problem?.message;
+    line.textContent = this.shapes.length || problem ? said ?? `Ready to play${count}.` : "";
+    const items = notes.map(text => element("li", { textContent: text }));
+    document.getElementById("draw-notes").replaceChildren(...items);
+    const noted = document.getElementById("draw-noted");
+    noted.hidden = !notes.length;
+    noted.firstElementChild.textContent = `Notes (${notes.length})`;
+    this.elements.show();
+    this.form.showProblem();
+    this.showAll();
+  }
+
+  /** The element in which the problem lies. */
+  get wrong() {
+    if (!this.problem?.path) return null;
+    const keys = pathKeys(this.problem.path);
+    const holds = ({ path }) => path.every((key, k) => key === keys[k]);
+    // A problem of a list as a whole stands at its first element.
+    const isOf = ({ path }) => keys.every((key, k) => key === path[k]);
+    return this.shapes.find(holds) ?? this.shapes.find(isOf) ?? null;
+  }
+
+  /** Selects the element with the problem. */
+  showProblem() {
+    if (!this.problem) return;
+    const { wrong } = this;
+    this.select(wrong?.text ?? null);
+    if (wrong?.strokes.length) this.sheet.reveal(wrong.middle);
+    if (!this.form.showProblem(true)) this.elements.focus(wrong);
+  }
+
+  /** The message beside the element with the problem. */
+  showMark() {
+    const mark = document.getElementById("draw-mark"), { wrong, sheet } = this;
+    for (const own of sheet.world.children) own.classList.toggle("wrong", own.dataset.path === wrong?.text);
+    mark.hidden = !wrong?.strokes.length || !this.shown.includes(wrong);
+    if (mark.hidden) return;
+    mark.textContent = this.problem.reason ?? this.problem.message;
+    const [low, high] = extent(wrong.strokes[0].points), [x, y] = sheet.toSheet([high[0], high[1]]);
+    const [, bottom] = sheet.toSheet(low);
+    const left = Math.min(Math.max(x + 10, 6), sheet.width - mark.offsetWidth - 52);
+    mark.style.left = `${Math.max(left, 6)}px`;
+    const above = y - mark.offsetHeight - 8, lowest = sheet.height - mark.offsetHeight - 40;
+    mark.style.top = `${Math.max(Math.min(above > 6 ? above : bottom + 8, lowest), 6)}px`;
+  }
+
+  /** Plays the drawing, or leads to its problem. */
+  async play() {
+    try {
+      await this.studio.play(this.document);
+    } catch (error) {
+      if (this.studio.mode !== "draw") this.studio.open("draw");
+      this.problem = { path: error.path ?? "", reason: error.reason, message: this.studio.words(error) };
+      this.showFound({ problem: this.problem, notes: [] });
+      this.showProblem();
+    }
+  }
+
+  /* What is shown. */
+
+  showAll() {
+    document.getElementById("draw-hint").textContent = this.draft.hint;
+    this.sheet.show();
+  }
+
+  say(text) {
+    document.getElementById("draw-hint").textContent = text;
+  }
+
+  tellPlace([x, y]) {
+    document.getElementById("draw-place").textContent = `${shown(x, 3)}, ${shown(y, 3)} m`;
+  }
+
+  /** What to do next, until there is a floor, a way out and people. */
+  get nextHint() {
+    const { document: own } = this, has = list => own[list]?.length;
+    if (!this.shapes.some(shape => shape.strokes.length)) return "Draw a room: press R or click Room, then drag.";
+    const leads = own.levels || own.periodic || own.goal || has("exits");
+    if (has("walkable_area") && !leads) return "Now draw an exit: press E, then drag along a wall of the room.";
+    const isEmpty = !own.from && !["crowds", "grids", "sources", "agents", "entrances"].some(has);
+    return isEmpty ? "Now draw a crowd: press C, then drag in the room." : "";
+  }
+
+  showEmpty() {
+    const empty = document.getElementById("draw-empty");
+    empty.textContent = this.nextHint;
+    empty.hidden = !empty.textContent;
+    empty.classList.toggle("first", !this.shapes.some(shape => shape.strokes.length));
+  }
+
+  showLevels() {
+    const levels = Array.isArray(this.document.levels) ? this.document.levels : [];
+    document.getElementById("draw-leveled").hidden = !levels.length;
+    if (!levels.some(level => level.name === this.level)) this.level = levels[0]?.name ?? null;
+    const option = ({ name }) => element("option", { value: name, textContent: name, selected: name === this.level });
+    const options = levels.map(option);
+    document.getElementById("draw-level").replaceChildren(...options);
+  }
+
+  chooseLevel(name) {
+    this.level = name;
+    this.read();
+    this.showLevels();
+    this.elements.show();
+    this.sheet.fit();
+  }
+
+  /** A place in pixels of the window, and the scale in pixels per meter. */
+  toScreen(place) {
+    return this.sheet.toScreen(place);
+  }
+
+  get scale() {
+    return this.sheet.scale;
+  }
+}

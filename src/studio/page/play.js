@@ -1,0 +1,357 @@
+/* The player: the viewer of pages for a run that goes on, with controls for it. */
+
+/** A run that goes on: the page follows its newest frame, or looks back. */
+class Player extends Page {
+  /** How far the page may stay behind the newest frame, so that people move evenly, seconds of real time. */
+  static LATE = 0.06;
+  /** Plots and doors change at most once in this time, milliseconds. */
+  static PLOTTING = 500;
+  static LISTING = 200;
+  /** The most events in the list. */
+  static MOST_EVENTS = 60;
+  /** How far `B` goes back, seconds. */
+  static BACK = 5;
+  /** How long the browser may take to write a saved file, milliseconds. */
+  static KEPT = 60_000;
+  /** The player in the page, and the elements for the next one. */
+  static current = null;
+  static empty = null;
+
+  /** Plays a run of the program, by its number, in place of the one that was played before. */
+  static async open(id) {
+    const run = await LiveRun.open(id);
+    Player.current?.close();
+    const section = document.getElementById("playing");
+    Player.empty ??= section.cloneNode(true);
+    section.replaceChildren(...Player.empty.cloneNode(true).childNodes);
+    return Player.current = new Player(run);
+  }
+
+  /** Stops asking for frames. The run itself stays with the program. */
+  close() {
+    this.ending.abort();
+  }
+
+  setUp() {
+    const $ = id => document.getElementById(id), on = (id, does) => $(id).addEventListener("click", does);
+    $("plan").before($("tools"));
+    $("plan").append($("looking"), $("problem"));
+    $("person").after($("own"), $("doors"), $("parameters"), $("happened"));
+    $("stage").append($("acts"));
+    $("speed").append(element("option", { value: "Infinity", textContent: "as fast as possible" }));
+    super.setUp();
+    /** The number of drawn pictures. */
+    this.pictures = 0;
+    this.isBack = false;
+    /** Where the followed person was: times and places. */
+    this.steps = [];
+    this.plotted = this.listed = 0;
+    this.tools = new CrowdTools(this);
+    this.doors = new Doors(this);
+    on("goback", () => this.goBack(this.time));
+    on("return", () => this.return());
+    on("dismiss", () => this.fail(null));
+    on("back5", () => this.goBack(this.run.state.time - Player.BACK));
+    on("fork", () => this.fork());
+    on("edit", () => studio.edit(this.run.document));
+    on("check", () => this.check());
+    on("all", () => this.tellAll());
+    $("pace").addEventListener("input", event => $("paced").textContent = `${event.target.value} m/s`);
+    $("pace").addEventListener("change", event => this.setPace(Number(event.target.value)));
+    this.run.listen(this.ending.signal, () => this.update());
+  }
+
+  open() {
+    super.open();
+    this.return();
+    this.update();
+  }
+
+  /* What the program is asked for. */
+
+  /** Does something that the program may refuse, and shows why; its result, or nothing. */
+  async attempt(does) {
+    try {
+      const result = await does();
+      this.fail(null);
+      return result;
+    } catch (error) {
+      this.fail(error);
+      return null;
+    }
+  }
+
+  /** Shows why something did not work, near the plan, or nothing. */
+  fail(error) {
+    const words = error instanceof TypeError ? `The program does not answer: ${error.message}` : error?.message;
+    document.getElementById("problem").hidden = !error;
+    document.getElementById("reason").textContent = words ?? "";
+  }
+
+  /** Says what was done. */
+  say(text) {
+    document.getElementById("said").textContent = text;
+  }
+
+  async control(asked) {
+    const answer = await this.attempt(() => ask(`runs/${this.run.id}/control`, asked));
+    if (!answer) return;
+    this.run.state = answer.state;
+    this.update();
+  }
+
+  /** Changes the run, as an element of `interventions` does; what became of people who were to be added. */
+  intervene(action) {
+    return this.attempt(() => ask(`runs/${this.run.id}/intervene`, action));
+  }
+
+  /** Plays or stops; who looks back returns, and the run plays. */
+  play(playing) {
+    const wasBack = this.isBack;
+    this.return();
+    this.control({ play: playing || wasBack });
+  }
+
+  setSpeed(speed) {
+    this.control({ speed: Number.isFinite(speed) ? speed : null });
+  }
+
+  /** Sets the run back to a time; it goes on from there if it plays. */
+  goBack(time) {
+    const { playing } = this.run.state;
+    this.return();
+    return this.control({ to: Math.max(time, 0), ...(playing ? { play: true } : {}) });
+  }
+
+  async fork() {
+    const forked = await this.attempt(() => ask(`runs/${this.run.id}/fork`, {}));
+    if (forked && !open(`${location.pathname}#run=${forked.run}`, "_blank")) {
+      this.say(`The browser opened no tab for the fork: it is run ${forked.run} on the start page.`);
+    }
+  }
+
+  async check() {
+    const found = await this.attempt(() => ask(`runs/${this.run.id}/digest`));
+    const text = found ? `state_sha256 ${found.state_sha256} in frame ${found.frame}, ${shown(found.time)} s` : "";
+    document.getElementById("digest").textContent = text;
+  }
+
+  /** Saves what was played: its scenario, or a page, a recording, a report or a picture of it. */
+  async save(kind) {
+    this.say(`The program makes the file (${kind}) …`);
+    const file = await this.attempt(async () => {
+      const answer = await answerOf(`runs/${this.run.id}/saved?as=${kind}`);
+      const [, name] = /filename="([^"]+)"/.exec(answer.headers.get("Content-Disposition")) ?? [null, `run.${kind}`];
+      return { name, content: await answer.blob() };
+    });
+    this.say(file ? `${file.name} is saved.` : "");
+    if (!file) return;
+    const address = URL.createObjectURL(file.content);
+    element("a", { href: address, download: file.name }).click();
+    setTimeout(() => URL.revokeObjectURL(address), Player.KEPT);
+  }
+
+  /* Time. */
+
+  seek(time) {
+    super.seek(time);
+    this.isBack = this.time < this.run.newest - LiveRun.SAME;
+    this.showBack();
+  }
+
+  /** Looks at the newest frame again. */
+  return() {
+    this.isBack = false;
+    this.time = this.run.newest;
+    this.isDirty = true;
+    this.showBack();
+  }
+
+  /** Looks one frame back or on; at the end of what is kept, the run computes one more. */
+  step(frames) {
+    if (frames > 0 && !this.isBack) {
+      this.control({ step: 1 });
+      return;
+    }
+    const frame = this.run.frameAt(this.time) + frames;
+    this.seek(this.run.times[Math.min(Math.max(frame, 0), this.run.last)]);
+  }
+
+  tick(now) {
+    if (document.body.dataset.mode === "play") super.tick(now);
+  }
+
+  advance(passed) {
+    const { newest, times, state } = this.run;
+    const before = this.time;
+    if (this.isBack) this.time = Math.max(before, times[0]);
+    else if (!state.playing || state.seeks) this.time = newest;
+    else this.time = this.following(passed, state.behind || state.speed === null ? state.rate : state.speed);
+    if (this.time !== before) this.isDirty = true;
+  }
+
+  /** The time to show: it runs at the speed of the run, a little behind the newest frame, which it never waits for. */
+  following(passed, speed) {
+    const { newest, times, last, batch } = this.run;
+    const pace = speed ?? batch / Player.LATE, frame = newest - (times[last - 1] ?? newest);
+    const most = Math.max(Player.LATE * pace, frame), late = newest - this.time;
+    const wanted = Math.min(Math.max(1.2 * batch, frame), most);
+    const faster = Math.min(Math.max(1 + (late - wanted) / Math.max(most, 1e-9), 0.5), 2);
+    return Math.min(Math.max(this.time + pace * faster * passed, newest - most), newest);
+  }
+
+  /* What is shown. */
+
+  /** Shows what has come from the program. */
+  update() {
+    if (document.hidden || document.body.dataset.mode !== "play") return;
+    this.time = Math.min(this.time, this.run.newest);
+    this.isDirty = true;
+    this.showState();
+    const now = performance.now();
+    if (now - this.listed >= Player.LISTING || !this.run.state.playing) {
+      this.listed = now;
+      this.doors.show(this.run.state.doors);
+      this.tellEvents();
+    }
+    if (now - this.plotted < Player.PLOTTING) return;
+    this.plotted = now;
+    const shown = this.plots.plots.reduce((sum, plot) => sum + plot.series.length, 0);
+    if (this.plots.known.length > shown) this.plots.build();
+    else this.plots.draw();
+    this.showEnds();
+  }
+
+  showState() {
+    const { state, isConnected, closed } = this.run, $ = id => document.getElementById(id);
+    if (this.playing !== state.playing) {
+      this.playing = state.playing;
+      this.showPlaying();
+    }
+    const speed = String(state.speed ?? Infinity);
+    if ($("speed").value !== speed) $("speed").value = speed;
+    const isSlow = state.behind && state.rate !== null;
+    const slow = isSlow ? `This speed is too fast: ${shown(state.rate, 2)} × is reached.` : "";
+    const fastest = state.playing && state.speed === null && state.rate ? `${shown(state.rate, 1)} ×` : "";
+    const end = state.end && !state.playing ? `The run has ended: ${state.end}. Play goes on.` : "";
+    const away = isConnected ? "" : "The program has ended; the page keeps what it has.";
+    $("going").textContent = closed || away || state.fault || (state.seeks ? "on the way …" : end || slow || fastest);
+    $("going").classList.toggle("wrong", Boolean(closed || away || state.fault));
+    this.showBack();
+  }
+
+  showBack() {
+    const looking = document.getElementById("looking");
+    looking.hidden = !this.isBack;
+    if (!this.isBack) return;
+    const text = `You look at ${this.time.toFixed(2)} s; the run is at ${this.run.newest.toFixed(2)} s`;
+    looking.firstElementChild.textContent = text;
+  }
+
+  /** The list of what has happened, the newest first, and of warnings. */
+  tellEvents() {
+    const { events, state } = this.run, list = document.getElementById("events");
+    const from = events.lastIndexOf(this.lastEvent) + 1;
+    if (from === 0) list.replaceChildren();
+    for (const [time, text, isWarning] of events.slice(from).slice(-Player.MOST_EVENTS)) {
+      const when = element("b", { textContent: `${shown(time, 2)} s` });
+      list.prepend(element("li", { className: isWarning ? "wrong" : "" }, when, ` ${text}`));
+    }
+    while (list.children.length > Player.MOST_EVENTS) list.lastElementChild.remove();
+    this.lastEvent = events.at(-1);
+    const warnings = state.warnings.join("\n");
+    if (warnings === this.warned) return;
+    this.warned = warnings;
+    const items = state.warnings.map(text => element("li", { textContent: text }));
+    document.getElementById("warnings").replaceChildren(...items);
+  }
+
+  get clock() {
+    return `${this.time.toFixed(2)} s`;
+  }
+
+  draw() {
+    super.draw();
+    if (!this.isShown) return;
+    this.pictures++;
+    const own = this.people.person(this.followed), last = this.steps.at(-1);
+    if (own && this.time !== last?.time) this.steps.push({ time: this.time, place: own.place });
+  }
+
+  /** The path of the last seconds: blocks are shorter than it. */
+  trail(pen) {
+    this.steps = this.steps.filter(({ time }) => time <= this.time && time >= this.time - TRAIL);
+    pen.beginPath();
+    for (const { place } of this.steps) pen.lineTo(...this.plan.toScreen(place));
+    pen.setLineDash([]);
+    pen.lineWidth = 2;
+    pen.strokeStyle = "rgba(213, 94, 0, 0.55)";
+    pen.stroke();
+  }
+
+  overlay(pen) {
+    super.overlay(pen);
+    this.tools.draw(pen);
+  }
+
+  get hasMarks() {
+    return super.hasMarks || this.tools.hasMarks;
+  }
+
+  get pointed() {
+    return this.tools.current.points ? super.pointed : null;
+  }
+
+  /* The followed person. */
+
+  follow(id) {
+    super.follow(id);
+    this.steps = [];
+    document.getElementById("own").hidden = id === null;
+    document.getElementById("numbers").hidden = true;
+    document.getElementById("paced").textContent = "as given";
+    this.control({ follow: id });
+  }
+
+  /** The forces on everybody are known: nobody is offered. */
+  offered() {
+    return [];
+  }
+
+  /** The preferred speed of the followed person. */
+  async setPace(speed) {
+    const done = await this.intervene({ set_speed: { agents: [this.followed], preferred_speeds: [speed] } });
+    if (done) this.say(`Person ${this.followed} now prefers ${speed} m/s.`);
+  }
+
+  async tellAll() {
+    const numbers = document.getElementById("numbers");
+    const found = await this.attempt(() => ask(`runs/${this.run.id}/person?id=${this.followed}`));
+    numbers.hidden = !found;
+    numbers.textContent = found ? JSON.stringify(found, null, 2) : "";
+  }
+
+  /* Mouse, touch and keys. */
+
+  press(at, isAlone) {
+    if (isAlone) this.tools.press(this.plan.toPlan(at));
+    else this.tools.cancel();
+  }
+
+  drag(to) {
+    return this.tools.drag(this.plan.toPlan(to));
+  }
+
+  release(isDone) {
+    return this.tools.release(isDone);
+  }
+
+  key(event) {
+    if (document.body.dataset.mode !== "play" || event.ctrlKey || event.metaKey || event.altKey) return;
+    const { tagName } = event.target, isTyping = ["SELECT", "INPUT", "TEXTAREA"].includes(tagName);
+    if (isTyping && event.key !== "Escape" || tagName === "SUMMARY" && event.key === " ") return;
+    if (this.tools.key(event)) event.preventDefault();
+    else if (event.key.toLowerCase() === "b") this.goBack(this.run.state.time - Player.BACK);
+    else super.key(event);
+  }
+}

@@ -1,0 +1,473 @@
+//! A run that is played: at the speed asked for, set back, changed from outside. It lives on a thread of its own.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use engine::breakdown::Breakdown;
+use engine::math::Vector;
+use engine::simulation::Added;
+use output::drawing::{Drawing, Drawn};
+use output::events::Events;
+use output::page::{Live, Moment, PageOptions};
+use output::picture::{Crowd, Picture};
+use output::recording::DebugAgents;
+use runs::drive::Run;
+use runs::notes;
+use scenario::Scenario;
+use serde_json::{Value, json};
+
+use crate::answer::Refusal;
+use crate::doors::Doors;
+use crate::feed::Feed;
+use crate::snapshots::Snapshots;
+
+/// The most pictures per second that pages get.
+const PICTURES: f64 = 30.0;
+/// The longest time between two looks at what is asked for.
+const SLICE: Duration = Duration::from_millis(20);
+/// A run that is this much late is too slow for its speed, seconds of real time.
+const LATE: f64 = 0.25;
+/// The time over which the reached speed is measured.
+const MEASURED: Duration = Duration::from_secs(1);
+
+/// A run that is played.
+pub struct Player {
+    run: Run,
+    live: Arc<Live>,
+    drawing: Option<Drawing>,
+    events: Events,
+    doors: Doors,
+    snapshots: Snapshots,
+    feed: Arc<Feed>,
+    /// The person whose forces pages show.
+    followed: Option<u32>,
+    /// Whether the end of the scenario was reached: who plays on then goes beyond it.
+    has_ended: bool,
+    fault: Option<String>,
+    /// The frame to which the run moves as fast as it can, before it is shown again.
+    target: Option<u64>,
+    pace: Pace,
+    shown: Instant,
+    /// Whether something was done that pages have not seen.
+    is_awaited: bool,
+    warnings: Vec<String>,
+}
+
+/// The speed at which a run is played.
+struct Pace {
+    playing: bool,
+    /// Seconds of the run per second; `None`: as fast as it can.
+    speed: Option<f64>,
+    /// A moment, and the time of the run at it.
+    since: (Instant, f64),
+    behind: bool,
+    /// The reached speed, and since when it is measured.
+    rate: Option<f64>,
+    measured: (Instant, f64),
+}
+
+impl Pace {
+    fn begin(&mut self, time: f64) {
+        let now = Instant::now();
+        self.since = (now, time);
+        self.measured = (now, time);
+        self.rate = None;
+        self.behind = false;
+    }
+
+    /// The time that the run should have reached, seconds.
+    fn due(&self) -> f64 {
+        let (since, time) = self.since;
+        self.speed.map_or(f64::INFINITY, |speed| {
+            time + speed * since.elapsed().as_secs_f64()
+        })
+    }
+
+    /// Notes the time that the run has reached.
+    fn reach(&mut self, time: f64) {
+        let (since, from) = self.measured;
+        if since.elapsed() >= MEASURED {
+            self.rate = Some((time - from) / since.elapsed().as_secs_f64());
+            self.measured = (Instant::now(), time);
+        }
+        let Some(speed) = self.speed else {
+            return;
+        };
+        let late = self.due() - time > LATE * speed;
+        if late {
+            // What is lost is not made up for.
+            self.since = (Instant::now(), time);
+        }
+        self.behind = late || self.behind && self.rate.is_some_and(|rate| rate < 0.95 * speed);
+    }
+}
+
+impl Player {
+    /// A run of a scenario in its first frame, its page, and where it leaves its frames.
+    ///
+    /// # Errors
+    /// An agent cannot enter, or a number is not finite.
+    pub fn new(scenario: Scenario, feed: Arc<Feed>) -> Result<Self, Refusal> {
+        let run = Run::new(scenario).map_err(|fault| Refusal::with(422, fault.to_string()))?;
+        Self::of(run, None, feed)
+    }
+
+    fn of(mut run: Run, events: Option<Events>, feed: Arc<Feed>) -> Result<Self, Refusal> {
+        // Densities depend on those before, so every frame needs them.
+        run.simulation.request_density_until(u64::MAX);
+        let evaluated = run.simulation.evaluate().map(drop);
+        evaluated.map_err(|fault| Refusal::with(422, fault.to_string()))?;
+        let (live, drawing) = page(&run);
+        let now = Instant::now();
+        let time = run.simulation.frame().clock.time();
+        let mut player = Self {
+            events: events.unwrap_or_else(|| Events::new(run.scenario.entering)),
+            run,
+            live: Arc::new(live),
+            drawing,
+            doors: Doors::default(),
+            snapshots: Snapshots::default(),
+            feed,
+            followed: None,
+            has_ended: false,
+            fault: None,
+            target: None,
+            pace: Pace {
+                playing: false,
+                speed: Some(1.0),
+                since: (now, time),
+                behind: false,
+                rate: None,
+                measured: (now, time),
+            },
+            shown: now,
+            is_awaited: false,
+            warnings: Vec::new(),
+        };
+        player.observe();
+        player.warn();
+        player.show(false);
+        Ok(player)
+    }
+
+    /// What does not move, and the code of its frames.
+    pub fn live(&self) -> Arc<Live> {
+        self.live.clone()
+    }
+
+    /// The run, evaluated.
+    pub fn run(&self) -> &Run {
+        &self.run
+    }
+
+    /// How long the run has nothing to do; `None`: until it is asked for something.
+    pub fn idle(&self) -> Option<Duration> {
+        if self.target.is_some() {
+            return Some(Duration::ZERO);
+        }
+        if !self.pace.playing {
+            return None;
+        }
+        let clock = self.run.simulation.frame().clock;
+        let next = clock.time_at(clock.frame() + 1);
+        let left = match self.pace.speed {
+            Some(speed) => (next - self.pace.due()) / speed,
+            None => 0.0,
+        };
+        Some(Duration::try_from_secs_f64(left.max(0.0)).unwrap_or_default())
+    }
+
+    /// Computes the frames that are due, for at most a short while.
+    pub fn play(&mut self) {
+        let start = Instant::now();
+        let before = self.run.simulation.frame().clock.frame();
+        while start.elapsed() < SLICE && self.is_due() {
+            if !self.step() {
+                break;
+            }
+        }
+        let clock = self.run.simulation.frame().clock;
+        let is_seen = self.is_awaited && clock.frame() > before;
+        self.pace.reach(clock.time());
+        if let Some(target) = self.target {
+            if clock.frame() >= target {
+                self.target = None;
+                self.pace.begin(clock.time());
+                self.show(true);
+            }
+        } else if is_seen
+            || self.shown.elapsed().as_secs_f64() >= 1.0 / PICTURES
+            || !self.pace.playing
+        {
+            self.show(false);
+        }
+        self.tell();
+    }
+
+    fn is_due(&self) -> bool {
+        let clock = self.run.simulation.frame().clock;
+        match self.target {
+            Some(target) => clock.frame() < target,
+            None => self.pace.playing && clock.time_at(clock.frame() + 1) <= self.pace.due() + 1e-9,
+        }
+    }
+
+    /// Computes the next frame; whether there is one.
+    fn step(&mut self) -> bool {
+        let simulation = &mut self.run.simulation;
+        let stepped = simulation.integrate().map(drop);
+        let stepped = stepped.and_then(|()| simulation.evaluate().map(drop));
+        if let Err(fault) = stepped {
+            self.fault = Some(fault.to_string());
+            self.target = None;
+            self.stop();
+            return false;
+        }
+        self.observe();
+        if self.run.end.is_some() && !self.has_ended {
+            self.has_ended = true;
+            if self.target.is_none() {
+                self.stop();
+            }
+            return self.target.is_some();
+        }
+        true
+    }
+
+    /// Lets everything that observes see the current frame.
+    fn observe(&mut self) {
+        self.run.measure();
+        self.doors.observe(&self.run.simulation);
+        if let Err(problem) = self.snapshots.add(&self.run, &self.events) {
+            self.fault = Some(problem);
+        }
+    }
+
+    fn stop(&mut self) {
+        self.pace.playing = false;
+        self.warn();
+    }
+
+    fn warn(&mut self) {
+        let own = self.run.scenario.notes.iter().cloned();
+        self.warnings = own.chain(notes::of(&self.run)).collect();
+    }
+
+    /// Leaves the current frame for pages.
+    fn show(&mut self, is_back: bool) {
+        let simulation = &self.run.simulation;
+        let new = self.events.new_lines(simulation);
+        let crowd = Crowd::of(simulation, self.drawing.as_ref());
+        let debug = DebugAgents::Ids(self.followed.into_iter().collect());
+        let moment = Moment::of(simulation, &crowd, (self.events.evacuated, new), &debug);
+        self.feed.add(self.live.coded(&moment), is_back);
+        self.shown = Instant::now();
+        self.is_awaited = false;
+        self.tell();
+    }
+
+    /// Tells pages the state.
+    fn tell(&self) {
+        self.feed.set_state(self.state());
+    }
+
+    /// What pages show beside people.
+    pub fn state(&self) -> Value {
+        let simulation = &self.run.simulation;
+        let frame = simulation.frame();
+        json!({
+            "playing": self.pace.playing, "speed": self.pace.speed, "time": frame.clock.time(),
+            "frame": frame.clock.frame(), "end": self.run.end.map(|_| self.run.reason()), "fault": self.fault,
+            "people": frame.agents.count_present(), "behind": self.pace.playing && self.pace.behind,
+            "rate": self.pace.rate.filter(|_| self.pace.playing), "doors": self.doors.now(&self.run),
+            "done": simulation.interventions().len(), "warnings": self.warnings, "seeks": self.target.is_some(),
+            "followed": self.followed,
+        })
+    }
+
+    /// Plays or stops.
+    pub fn set_playing(&mut self, playing: bool) {
+        if playing && self.fault.is_none() {
+            self.pace.playing = true;
+            self.pace.begin(self.run.simulation.frame().clock.time());
+        } else {
+            self.stop();
+        }
+        self.tell();
+    }
+
+    /// Sets the speed: seconds of the run per second; `None`: as fast as it can.
+    ///
+    /// # Errors
+    /// The speed is not above 0.
+    pub fn set_speed(&mut self, speed: Option<f64>) -> Result<(), Refusal> {
+        if speed.is_some_and(|speed| !(speed.is_finite() && speed > 0.0)) {
+            return Err(Refusal::wrong(
+                "speed: give a number above 0, or null for as fast as possible",
+            ));
+        }
+        self.pace.speed = speed;
+        self.pace.begin(self.run.simulation.frame().clock.time());
+        self.tell();
+        Ok(())
+    }
+
+    /// Stops, and computes some frames.
+    pub fn step_by(&mut self, frames: u64) {
+        self.stop();
+        for _ in 0..frames {
+            if !self.step() {
+                break;
+            }
+            self.show(false);
+        }
+        self.tell();
+    }
+
+    /// Goes to a time, back or on, and stops there: to the frame nearest to it.
+    ///
+    /// # Errors
+    /// The time is not within the run, or an earlier frame is not known.
+    pub fn go_to(&mut self, secs: f64) -> Result<(), Refusal> {
+        let clock = *self.run.simulation.frame().clock;
+        if !(secs.is_finite() && secs >= 0.0 && secs <= 1e7) {
+            return Err(Refusal::wrong("to: give a time in seconds, from 0 on"));
+        }
+        self.stop();
+        let frame = clock.frame_at(secs);
+        if frame < clock.frame() {
+            let back = self.snapshots.back_to(frame);
+            let back = back.map_err(|problem| Refusal::with(500, problem))?;
+            let back = back.ok_or_else(|| Refusal::wrong("to: the run began later"))?;
+            self.run = back.run;
+            self.events = back.events;
+            self.doors = Doors::default();
+            self.has_ended = false;
+            self.fault = None;
+        }
+        self.target = Some(frame);
+        self.tell();
+        Ok(())
+    }
+
+    /// Shows the forces on a person from now on.
+    pub fn follow(&mut self, id: Option<u32>) {
+        self.followed = id;
+        self.show(false);
+    }
+
+    /// Does what an element of the list `interventions` says, at the beginning of the next frame. Without play this
+    /// frame is computed at once, to show it.
+    ///
+    /// # Errors
+    /// A key or a name is unknown, a number is out of range, or the action is not possible.
+    pub fn intervene(&mut self, keys: &Value) -> Result<Added, Refusal> {
+        if self.target.is_some() {
+            return Err(Refusal::with(
+                409,
+                "the run is on its way to another time; wait until it is there",
+            ));
+        }
+        let (keys, off_floor) = self.on_floor(keys);
+        let action = self.run.scenario.action(&keys)?;
+        let added = self.run.intervene(action);
+        let mut added = added.map_err(|error| Refusal::with(422, error.to_string()))?;
+        for place in off_floor {
+            // The places of the others are counted without those before them.
+            let later = added.without_room.partition_point(|&other| other < place);
+            added.without_room[later..]
+                .iter_mut()
+                .for_each(|other| *other += 1);
+            added.without_room.insert(later, place);
+        }
+        self.is_awaited = true;
+        if !self.pace.playing {
+            self.step();
+            self.show(false);
+        }
+        Ok(added)
+    }
+
+    /// An intervention without the people who would enter outside of the floor, if others enter on it; and their
+    /// places in the list. In a building all are left.
+    fn on_floor(&self, keys: &Value) -> (Value, Vec<usize>) {
+        let mut left = keys.clone();
+        let scene = self.run.simulation.scene();
+        let add = &keys["add"];
+        let Some(positions) = add["positions"]
+            .as_array()
+            .filter(|_| scene.levels.is_none())
+        else {
+            return (left, Vec::new());
+        };
+        let is_off = |place: &Value| {
+            let [x, y] = [0, 1].map(|axis| place[axis].as_f64());
+            let place = x.zip(y).map(|(x, y)| Vector::new(x, y));
+            place.is_some_and(|place| scene.walls.obstacle_at(place).is_some())
+        };
+        let off: Vec<usize> = (0..positions.len())
+            .filter(|&k| is_off(&positions[k]))
+            .collect();
+        if off.len() == positions.len() {
+            return (left, Vec::new());
+        }
+        for list in ["positions", "goals", "velocities"] {
+            let whole = add[list].as_array();
+            let whole = whole.filter(|whole| whole.len() == positions.len());
+            if let Some(whole) = whole {
+                let on = whole.iter().enumerate().filter(|(k, _)| !off.contains(k));
+                left["add"][list] = on.map(|(_, value)| value.clone()).collect();
+            }
+        }
+        (left, off)
+    }
+
+    /// A copy of the run in the same frame, for another page.
+    ///
+    /// # Errors
+    /// A measurement cannot be copied.
+    pub fn fork(&self, feed: Arc<Feed>) -> Result<Self, Refusal> {
+        let run = self.run.fork();
+        let run = run.map_err(|problem| Refusal::with(500, problem))?;
+        Self::of(run, Some(self.events.clone()), feed)
+    }
+
+    /// The forces on a person, as `sandbox inspect --json` has them.
+    ///
+    /// # Errors
+    /// The person is not there.
+    pub fn person(&self, id: u32) -> Result<Value, Refusal> {
+        let simulation = &self.run.simulation;
+        let i = simulation.present(id);
+        let i = i.map_err(|why| Refusal::with(404, format!("person {id}: {why}")))?;
+        let breakdown = Breakdown::of(simulation, i)
+            .ok_or_else(|| Refusal::with(404, "the frame has no densities"))?;
+        serde_json::to_value(&breakdown).map_err(|error| Refusal::with(500, error.to_string()))
+    }
+
+    /// The digest of the state, with its time and frame.
+    pub fn digest(&self) -> Value {
+        let clock = self.run.simulation.frame().clock;
+        json!({
+            "state_sha256": self.run.simulation.digest(), "time": clock.time(), "frame": clock.frame(),
+        })
+    }
+}
+
+/// The page of a run, and how the levels of a building lie in it.
+fn page(run: &Run) -> (Live, Option<Drawing>) {
+    let scenario = &run.scenario;
+    let (drawn, nobody) = (Drawn::of(scenario), Crowd::default());
+    let picture = Picture {
+        simulation: Some(&run.simulation),
+        ..Picture::of(&drawn, &nobody, String::new())
+    };
+    let options = PageOptions {
+        title: scenario.name.clone(),
+        description: scenario.description.clone(),
+        density_range: scenario.view.density_range,
+        speed_range: scenario.view.speed_range,
+        ..PageOptions::of(&scenario.scene, true)
+    };
+    (Live::new(&picture, &options), drawn.drawing)
+}
