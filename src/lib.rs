@@ -43,8 +43,8 @@
 //! | w | `collision_weight` | | v^pref, s_pref, s_max | `preferred_velocity`, `preferred_speed`, `max_speed` |
 //!
 //! The code has ten layers: the crates common, engine, analysis, scenario, runs, figures, output, lab and studio, and
-//! the module cli. A layer uses only those before it in this list, and a module uses only the modules above it in its crate; the compiler and
-//! `tests/architecture.rs` check this.
+//! the module cli. A layer uses only those before it in this list, and a module uses only the modules above it in its
+//! crate; the compiler and `tests/architecture.rs` check this.
 //! `docs/reference/architecture.md` describes the loop and the path from a scenario file to a recording, and
 //! `docs/reference/extending.md` has recipes for extensions.
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use crate::common::building_files::{People, house, in_all_formats, people, rows};
+use crate::common::buildings::tower;
 use crate::common::page::Page;
 use crate::common::pictures;
 use crate::common::program::{json, refused, run, text};
@@ -366,6 +367,57 @@ fn reports_count_the_people_on_each_level() {
         assert_eq!(row[5], count.to_string(), "{row:?}");
         assert!(count > 0, "{level}");
     }
+}
+
+#[test]
+fn reports_name_the_limits_of_levels_stairs_and_lifts() {
+    let folder = tempfile::tempdir().unwrap();
+    let [lifts, html] = ["lifts.json", "a.html"].map(|name| folder.path().join(name));
+    std::fs::write(&lifts, tower().to_string()).unwrap();
+    let report = |scenario: &str| {
+        let output = run(&["report", scenario, "--out", text(&html), "--force"]);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        std::fs::read_to_string(&html).unwrap()
+    };
+    let limits = |report: &str| {
+        let (_, rest) = report.split_once("Assumptions and limits</h2>").unwrap();
+        rest.split_once("</ul>").unwrap().0.to_owned()
+    };
+    let slopes =
+        "seen from above: 0.61 m/s up and 0.69 m/s down on <code>stairs</code>. No experiment";
+    let of_house = limits(&report(&house(&folder)));
+    assert!(of_house.contains(slopes), "{of_house}");
+    let report = report(text(&lifts));
+    let of_tower = limits(&report);
+    for said in [&of_house, &of_tower] {
+        assert!(said.contains("discs on the levels of a building"), "{said}");
+        assert!(!said.contains("flat floor"), "{said}");
+    }
+    assert!(of_house.contains("no lifts") && !of_house.contains("Lifts"));
+    assert!(of_tower.contains("Lifts take") && !of_tower.contains("no lifts"));
+    assert!(!of_tower.contains("m/s"), "{of_tower}");
+    // People wait at the stops until a lift comes.
+    for row in crate::common::html::rows(&report, "Waiting areas and queues") {
+        assert!(row[0].starts_with("lift, "), "{row:?}");
+        assert_eq!(row[2], "until a lift takes them");
+    }
+}
+
+#[test]
+fn inspect_names_the_lift_for_which_a_person_waits() {
+    let folder = tempfile::tempdir().unwrap();
+    let lifts = folder.path().join("lifts.json");
+    std::fs::write(&lifts, tower().to_string()).unwrap();
+    let typed = ["inspect", text(&lifts), "--all", "--at", "12"];
+    let output = run(&typed);
+    let said = String::from_utf8(output.stdout).unwrap();
+    let waits = "waits for the lift `lift` in `lift, second` since ";
+    assert!(said.contains(waits), "{said}");
+    assert!(!said.contains("is released"), "{said}");
+    let all = json(&run(&[&typed[..], &["--json"]].concat()));
+    let visits = all["agents"].as_array().unwrap().iter();
+    let mut waiting = visits.filter(|one| one["visit"]["status"] == "waiting");
+    assert!(waiting.all(|one| one["visit"]["lift"] == "lift"));
 }
 
 #[test]

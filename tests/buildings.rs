@@ -230,6 +230,7 @@ fn only_those_who_are_held_up_on_stairs_stand_in_a_queue() {
         // They walk up behind each other, slower than half of their speed on a floor.
         assert_eq!(queues(&document), [0_u32; 0], "{kind}");
         let mut document = flight(kind, 0.7);
+        document["exits"][0]["most_per_sec"] = json!(0.3);
         document["crowds"] = json!([{"level": "ground", "area": [[2, 0], [23, 0], [23, 1.5], [2, 1.5]], "number": 60}]);
         assert!(
             queues(&document).first().is_some_and(|&most| most >= 8),

@@ -68,6 +68,7 @@ mod stability;
 mod strangers;
 mod stress;
 mod studio;
+mod studio_drawing;
 mod study_robustness;
 mod suite_changes;
 mod suites;

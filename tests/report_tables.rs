@@ -147,6 +147,7 @@ fn a_report_has_the_notes_of_the_run_and_the_limits_that_the_scenario_gives() {
     }
     let lines = rows(&html, "Exits, doors and gates");
     assert_eq!([&lines[0][4], &lines[1][4]], ["0.3", "–"]);
+    assert!(html.contains("<li>People are discs on one flat floor."));
     let waits = rows(&html, "Waiting areas and queues");
     let stay = |name: &str| waits.iter().find(|row| row[0] == name).unwrap()[2].clone();
     assert_eq!(stay("hall"), "for 5 s");

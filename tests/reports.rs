@@ -141,6 +141,33 @@ fn the_egress_table_counts_all_who_left_by_exit() {
 }
 
 #[test]
+fn people_in_the_last_frame_of_trajectories_have_not_left() {
+    let folder = tempfile::tempdir().unwrap();
+    // Person k is last seen at k seconds, the last one in the last frame.
+    let mut tracks = "# framerate: 10\n# id frame x/m y/m\n".to_owned();
+    for frame in 0..=50_i32 {
+        for id in (1..=5_i32).filter(|id| frame <= 10 * id) {
+            tracks += &format!("{id} {frame} {} {id}\n", 0.1 * f64::from(frame));
+        }
+    }
+    fs::write(folder.path().join("walk.txt"), tracks).unwrap();
+    let typed = ["draw", "walk.txt", "--egress", "--out", "egress.svg"];
+    let output = run_in(folder.path(), &typed);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let note = "1 person is still there in the last frame, at 5.00 s";
+    assert!(said.contains(&format!("note: {note}")), "{said}");
+    let svg = fs::read_to_string(folder.path().join("egress.svg")).unwrap();
+    let texts = pictures::texts(&svg);
+    assert!(texts.iter().any(|one| one == note), "{texts:?}");
+    // 4 of 5 are out; when 95 % and all had left is not known.
+    let table = String::from_utf8(output.stdout).unwrap();
+    let all = table.lines().find(|line| line.starts_with("all")).unwrap();
+    let cells: Vec<&str> = all.split_whitespace().collect();
+    assert_eq!(cells, ["all", "4", "80.0", "1.0", "3.0", "–", "–"]);
+}
+
+#[test]
 fn reports_and_curves_of_the_wrong_thing_are_refused() {
     refused(
         &["report", "evacuation", "--out", "report.txt"],

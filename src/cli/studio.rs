@@ -43,13 +43,13 @@ pub struct StudioOptions {
 pub fn run(options: &StudioOptions) -> Result<(), Failure> {
     use_threads(options.threads)?;
     let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
-    let server = Server::start(Studio {
+    let studio = Studio {
         scenario: options.scenario.clone().map(Source::at),
         port: options.port,
         memory: main_memory(),
         program: program(),
-    });
-    let server = server.map_err(|error| match error {
+    };
+    let server = Server::start(studio).map_err(|error| match error {
         ServerError::Scenario(_) => Failure::Input(error.to_string()),
         ServerError::Port { .. } => Failure::Output(error.to_string()),
     })?;

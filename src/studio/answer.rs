@@ -1,5 +1,7 @@
 //! Answers to requests, and why a request is refused.
 
+use std::fmt::Display;
+
 use scenario::ScenarioError;
 use serde_json::{Value, json};
 
@@ -51,6 +53,16 @@ impl Refusal {
     /// A request that is wrong.
     pub fn wrong(message: impl Into<String>) -> Self {
         Self::with(400, message)
+    }
+
+    /// A failure of the program or of the system.
+    pub fn failed(error: impl Display) -> Self {
+        Self::with(500, error.to_string())
+    }
+
+    /// A request that is right, for what is not possible now.
+    pub fn impossible(error: impl Display) -> Self {
+        Self::with(422, error.to_string())
     }
 
     /// A request with a status of HTTP.

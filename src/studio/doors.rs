@@ -42,12 +42,13 @@ impl Doors {
         }
     }
 
-    /// What is known of each now.
-    pub fn now(&self, run: &Run) -> Value {
+    /// What is known of each now, in a run whose queues have been observed from a time on, once per second.
+    pub fn now(&self, run: &Run, observed_from: f64) -> Value {
         let (simulation, queues) = (&run.simulation, run.metrics.queues());
         let scene = simulation.scene();
         let states = &simulation.progress().places;
         let now = simulation.frame().clock.time();
+        let people = simulation.frame().agents.count_present() as u32;
         let places = scene.journeys.places.iter().enumerate();
         let of_places = places.filter_map(|(k, place)| {
             let kind = match &place.kind {
@@ -62,7 +63,8 @@ impl Doors {
                 (now > time + EVERY).then(|| f64::from(passed - passed.min(*before)) / (now - time))
             });
             let number = u16::try_from(k).ok()?;
-            let queue = queues.get(&number).copied().unwrap_or_default();
+            let people_waiting = queues.get(&number).copied().unwrap_or_default();
+            let queue = (now >= observed_from + 1.0).then_some(people_waiting.min(people));
             Some(json!({
                 "name": place.name, "kind": kind, "open": state.is_none_or(|state| state.open), "passed": passed,
                 "queue": queue, "flow_per_s": flow,
@@ -83,8 +85,8 @@ impl Doors {
 fn is_open(simulation: &Simulation, k: usize) -> bool {
     let frame = simulation.frame().clock.frame();
     let planned = simulation.scene().interventions.iter();
-    let done = planned.chain(simulation.interventions());
-    let done = done.filter(|one| one.frame <= frame);
+    let all = planned.chain(simulation.interventions());
+    let done = all.filter(|one| one.frame <= frame);
     let changes = done.filter_map(|one| match one.action {
         Action::Entrance { entrance, open } if usize::from(entrance) == k => {
             Some((one.frame, open))

@@ -66,14 +66,13 @@ pub fn example(name: &str) -> Result<Value, Refusal> {
 
 impl Example {
     fn document(&self) -> Result<Value, Refusal> {
-        let texts = self.files.iter().map(|file| {
+        let text = |&file: &&'static str| {
             let path = Path::new(file);
-            let text = built_in(path).map(str::as_bytes);
-            text.map(|text| (path, text))
-        });
-        let texts: Option<Vec<_>> = texts.collect();
-        let texts = texts.ok_or_else(|| Refusal::with(500, "an example is missing"))?;
-        match texts.as_slice() {
+            let text = built_in(path).ok_or_else(|| Refusal::failed("an example is missing"));
+            text.map(|text| (path, text.as_bytes()))
+        };
+        let texts = self.files.iter().map(text);
+        match texts.collect::<Result<Vec<_>, _>>()?.as_slice() {
             [] => Ok(json!({
                 "name": "drawing", "profile": "steer+sph", "duration_secs": 600, "stop": {"when_empty": true},
             })),
@@ -84,12 +83,11 @@ impl Example {
 
 /// The document of the first of some files, and the notes on it.
 fn read(files: &[(&Path, &[u8])]) -> Result<(Value, Vec<String>), Refusal> {
-    let unwritten = |error: std::io::Error| Refusal::with(500, error.to_string());
-    let folder = tempfile::tempdir().map_err(unwritten)?;
+    let folder = tempfile::tempdir().map_err(Refusal::failed)?;
     let mut paths = Vec::new();
     for (name, content) in files {
         let path = folder.path().join(name.file_name().unwrap_or_default());
-        std::fs::write(&path, content).map_err(unwritten)?;
+        std::fs::write(&path, content).map_err(Refusal::failed)?;
         paths.push(path);
     }
     let place = format!("{}/", folder.path().display());
@@ -131,8 +129,9 @@ pub fn whole(source: &Source) -> Result<(Value, Vec<String>), Refusal> {
 /// It cannot be read.
 pub fn opened(name: &str, content: &[u8]) -> Result<Value, Refusal> {
     let path = Path::new(name);
-    let stem = path.file_stem();
-    let stem = stem.ok_or_else(|| Refusal::wrong("name: give the name of the file"))?;
+    let Some(stem) = path.file_stem() else {
+        return Err(Refusal::wrong("name: give the name of the file"));
+    };
     let (mut document, notes) = read(&[(path, content)])?;
     if document.get("name").is_none() {
         document["name"] = stem.to_string_lossy().into();
@@ -154,9 +153,18 @@ pub fn scenario(document: &Value, memory: Option<u64>) -> Result<Scenario, Refus
 /// Whether a drawing can be played: its first problem, the notes on it, and the number of people at the start.
 pub fn check(document: &Value, memory: Option<u64>) -> Value {
     match scenario(document, memory) {
-        Ok(scenario) => json!({
-            "problem": null, "notes": scenario.notes, "people": scenario.scene.agents.len(),
-        }),
+        Ok(scenario) => {
+            let count = document["interventions"].as_array().map_or(0, Vec::len);
+            let played = (count > 0).then(|| {
+                format!(
+                    "{count} change(s) made while it was played are part of the drawing and are made again: the key \
+                     `interventions`; the run ends at {} s",
+                    scenario.duration_secs
+                )
+            });
+            let notes: Vec<String> = played.into_iter().chain(scenario.notes).collect();
+            json!({"problem": null, "notes": notes, "people": scenario.scene.agents.len()})
+        }
         Err(refusal) => json!({"problem": refusal.document(), "notes": [], "people": null}),
     }
 }
@@ -167,8 +175,9 @@ fn names_no_file(document: &Value) -> Result<(), Refusal> {
     let is_name = |path: &str| document.pointer(path).is_some_and(Value::is_string);
     let levels = document["levels"].as_array().map_or(0, Vec::len);
     let of_levels = (0..levels).flat_map(|k| PLANS.map(|key| format!("levels/{k}/{key}")));
-    let all = PLANS.map(str::to_owned).into_iter().chain(of_levels);
-    let mut all = all.chain(["levels".to_owned(), "from/trajectory".to_owned()]);
+    let whole = ["levels".to_owned(), "from/trajectory".to_owned()];
+    let of_plan = PLANS.map(str::to_owned).into_iter();
+    let mut all = of_plan.chain(of_levels).chain(whole);
     let Some(path) = all.find(|path| is_name(&format!("/{path}"))) else {
         return Ok(());
     };

@@ -5,7 +5,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use output::page::{Coded, Live};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 /// The most frames that are kept, and the most people in them: a page that asks less often misses frames.
 const MOST_FRAMES: usize = 90;
@@ -133,12 +133,14 @@ impl Feed {
             .filter(|(number, _)| !is_known(*number))
             .map(|(_, frame)| &**frame)
             .collect();
-        let more = json!({
-            "epoch": latest.epoch, "joins": before.is_some(), "last": latest.last, "changes": latest.changes,
-            "state": latest.state,
-        });
+        let more = Map::from_iter([
+            ("epoch".to_owned(), latest.epoch.into()),
+            ("joins".to_owned(), before.is_some().into()),
+            ("last".to_owned(), latest.last.into()),
+            ("changes".to_owned(), latest.changes.into()),
+            ("state".to_owned(), latest.state.clone()),
+        ]);
         drop(latest);
-        let more: Map<String, Value> = more.as_object().cloned().unwrap_or_default();
         let parts = live.part(before.map(|(_, frame)| &**frame), &new, more);
         let lengths = parts
             .each_ref()

@@ -66,7 +66,7 @@ impl Play {
         };
         let thread = std::thread::Builder::new().name("run".to_owned());
         let started = thread.spawn(move || follow(player, &queue));
-        started.map_err(|error| Refusal::with(500, error.to_string()))?;
+        started.map_err(Refusal::failed)?;
         Ok(play)
     }
 

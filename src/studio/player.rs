@@ -41,8 +41,10 @@ pub struct Player {
     feed: Arc<Feed>,
     /// The person whose forces pages show.
     followed: Option<u32>,
-    /// Whether the end of the scenario was reached: who plays on then goes beyond it.
-    has_ended: bool,
+    /// The frame in which the scenario ended: who plays on then goes beyond it.
+    ended: Option<u64>,
+    /// The time from which on queues are observed, seconds.
+    observed_from: f64,
     fault: Option<String>,
     /// The frame to which the run moves as fast as it can, before it is shown again.
     target: Option<u64>,
@@ -108,15 +110,14 @@ impl Player {
     /// # Errors
     /// An agent cannot enter, or a number is not finite.
     pub fn new(scenario: Scenario, feed: Arc<Feed>) -> Result<Self, Refusal> {
-        let run = Run::new(scenario).map_err(|fault| Refusal::with(422, fault.to_string()))?;
+        let run = Run::new(scenario).map_err(Refusal::impossible)?;
         Self::of(run, None, feed)
     }
 
     fn of(mut run: Run, events: Option<Events>, feed: Arc<Feed>) -> Result<Self, Refusal> {
         // Densities depend on those before, so every frame needs them.
         run.simulation.request_density_until(u64::MAX);
-        let evaluated = run.simulation.evaluate().map(drop);
-        evaluated.map_err(|fault| Refusal::with(422, fault.to_string()))?;
+        run.simulation.evaluate().map_err(Refusal::impossible)?;
         let (live, drawing) = page(&run);
         let now = Instant::now();
         let time = run.simulation.frame().clock.time();
@@ -129,7 +130,8 @@ impl Player {
             snapshots: Snapshots::default(),
             feed,
             followed: None,
-            has_ended: false,
+            ended: None,
+            observed_from: time,
             fault: None,
             target: None,
             pace: Pace {
@@ -150,7 +152,12 @@ impl Player {
         Ok(player)
     }
 
-    /// What does not move, and the code of its frames.
+    /// The plan as it is now: closed doors look different.
+    pub fn scene(&self) -> Value {
+        page(&self.run).0.scene().clone()
+    }
+
+    /// The code of its frames.
     pub fn live(&self) -> Arc<Live> {
         self.live.clone()
     }
@@ -215,17 +222,16 @@ impl Player {
     /// Computes the next frame; whether there is one.
     fn step(&mut self) -> bool {
         let simulation = &mut self.run.simulation;
-        let stepped = simulation.integrate().map(drop);
-        let stepped = stepped.and_then(|()| simulation.evaluate().map(drop));
-        if let Err(fault) = stepped {
+        let moved = simulation.integrate().map(drop);
+        if let Err(fault) = moved.and_then(|()| simulation.evaluate().map(drop)) {
             self.fault = Some(fault.to_string());
             self.target = None;
             self.stop();
             return false;
         }
         self.observe();
-        if self.run.end.is_some() && !self.has_ended {
-            self.has_ended = true;
+        if self.run.end.is_some() && self.ended.is_none() {
+            self.ended = Some(self.run.simulation.frame().clock.frame());
             if self.target.is_none() {
                 self.stop();
             }
@@ -275,11 +281,12 @@ impl Player {
     pub fn state(&self) -> Value {
         let simulation = &self.run.simulation;
         let frame = simulation.frame();
+        let end = self.ended == Some(frame.clock.frame());
         json!({
             "playing": self.pace.playing, "speed": self.pace.speed, "time": frame.clock.time(),
-            "frame": frame.clock.frame(), "end": self.run.end.map(|_| self.run.reason()), "fault": self.fault,
+            "frame": frame.clock.frame(), "end": end.then(|| self.run.reason()), "fault": self.fault,
             "people": frame.agents.count_present(), "behind": self.pace.playing && self.pace.behind,
-            "rate": self.pace.rate.filter(|_| self.pace.playing), "doors": self.doors.now(&self.run),
+            "rate": self.pace.rate.filter(|_| self.pace.playing), "doors": self.doors.now(&self.run, self.observed_from),
             "done": simulation.interventions().len(), "warnings": self.warnings, "seeks": self.target.is_some(),
             "followed": self.followed,
         })
@@ -336,13 +343,13 @@ impl Player {
         self.stop();
         let frame = clock.frame_at(secs);
         if frame < clock.frame() {
-            let back = self.snapshots.back_to(frame);
-            let back = back.map_err(|problem| Refusal::with(500, problem))?;
-            let back = back.ok_or_else(|| Refusal::wrong("to: the run began later"))?;
+            let known = self.snapshots.back_to(frame).map_err(Refusal::failed)?;
+            let back = known.ok_or_else(|| Refusal::wrong("to: the run began later"))?;
             self.run = back.run;
             self.events = back.events;
             self.doors = Doors::default();
-            self.has_ended = false;
+            self.ended = None;
+            self.observed_from = self.run.simulation.frame().clock.time();
             self.fault = None;
         }
         self.target = Some(frame);
@@ -369,9 +376,15 @@ impl Player {
             ));
         }
         let (keys, off_floor) = self.on_floor(keys);
+        if !off_floor.is_empty() && keys["add"]["positions"] == json!([]) {
+            return Ok(Added {
+                without_room: off_floor,
+                ..Added::default()
+            });
+        }
         let action = self.run.scenario.action(&keys)?;
-        let added = self.run.intervene(action);
-        let mut added = added.map_err(|error| Refusal::with(422, error.to_string()))?;
+        let done = self.run.intervene(action);
+        let mut added = done.map_err(Refusal::impossible)?;
         for place in off_floor {
             // The places of the others are counted without those before them.
             let later = added.without_room.partition_point(|&other| other < place);
@@ -388,8 +401,8 @@ impl Player {
         Ok(added)
     }
 
-    /// An intervention without the people who would enter outside of the floor, if others enter on it; and their
-    /// places in the list. In a building all are left.
+    /// An intervention without the people who would enter outside of the floor, and their places in the list. In a
+    /// building all are left.
     fn on_floor(&self, keys: &Value) -> (Value, Vec<usize>) {
         let mut left = keys.clone();
         let scene = self.run.simulation.scene();
@@ -408,13 +421,9 @@ impl Player {
         let off: Vec<usize> = (0..positions.len())
             .filter(|&k| is_off(&positions[k]))
             .collect();
-        if off.len() == positions.len() {
-            return (left, Vec::new());
-        }
         for list in ["positions", "goals", "velocities"] {
-            let whole = add[list].as_array();
-            let whole = whole.filter(|whole| whole.len() == positions.len());
-            if let Some(whole) = whole {
+            let is_whole = |list: &&Vec<Value>| list.len() == positions.len();
+            if let Some(whole) = add[list].as_array().filter(is_whole) {
                 let on = whole.iter().enumerate().filter(|(k, _)| !off.contains(k));
                 left["add"][list] = on.map(|(_, value)| value.clone()).collect();
             }
@@ -427,8 +436,7 @@ impl Player {
     /// # Errors
     /// A measurement cannot be copied.
     pub fn fork(&self, feed: Arc<Feed>) -> Result<Self, Refusal> {
-        let run = self.run.fork();
-        let run = run.map_err(|problem| Refusal::with(500, problem))?;
+        let run = self.run.fork().map_err(Refusal::failed)?;
         Self::of(run, Some(self.events.clone()), feed)
     }
 
@@ -438,11 +446,11 @@ impl Player {
     /// The person is not there.
     pub fn person(&self, id: u32) -> Result<Value, Refusal> {
         let simulation = &self.run.simulation;
-        let i = simulation.present(id);
-        let i = i.map_err(|why| Refusal::with(404, format!("person {id}: {why}")))?;
+        let present = simulation.present(id);
+        let i = present.map_err(|why| Refusal::with(404, format!("person {id}: {why}")))?;
         let breakdown = Breakdown::of(simulation, i)
             .ok_or_else(|| Refusal::with(404, "the frame has no densities"))?;
-        serde_json::to_value(&breakdown).map_err(|error| Refusal::with(500, error.to_string()))
+        serde_json::to_value(&breakdown).map_err(Refusal::failed)
     }
 
     /// The digest of the state, with its time and frame.

@@ -90,9 +90,10 @@ impl Answers {
     fn described(&self, number: &str) -> Result<Answer, Refusal> {
         let number = parsed("the number of the run", number)?;
         let play = self.plays.get(number)?;
-        let duration = play.ask(|player| player.run().scenario.duration_secs)?;
+        let about = play.ask(|player| (player.scene(), player.run().scenario.duration_secs));
+        let (scene, duration) = about?;
         Ok(Answer::json(&json!({
-            "id": number, "name": play.name, "document": *play.document, "scene": play.live.scene(),
+            "id": number, "name": play.name, "document": *play.document, "scene": scene,
             "controls": *play.controls, "duration_secs": duration, "state": play.feed.state(),
         })))
     }
@@ -108,9 +109,9 @@ impl Answers {
         match what {
             (false, "frames") => frames(&play, query),
             (false, "person") => {
-                let id = number_of(query, "id")?;
-                let id =
-                    u32::try_from(id).map_err(|_| Refusal::wrong("id: there is no such person"))?;
+                let number = number_of(query, "id")?;
+                let id = u32::try_from(number)
+                    .map_err(|_| Refusal::wrong("id: there is no such person"))?;
                 Ok(Answer::json(&play.ask(move |player| player.person(id))??))
             }
             (false, "digest") => Ok(Answer::json(&play.ask(|player| player.digest())?)),
@@ -153,26 +154,26 @@ impl Answers {
 
 /// The frames after those that a page knows.
 fn frames(play: &Play, query: &HashMap<String, String>) -> Result<Answer, Refusal> {
-    let wait = number_of(query, "wait").unwrap_or(0).min(LONGEST_WAIT);
     let known = Known {
         epoch: number_of(query, "epoch")?,
         after: number_of(query, "after")?,
         changes: number_of(query, "changes").ok(),
     };
-    let parts = play
-        .feed
-        .after(&play.live, known, Duration::from_millis(wait));
-    let parts = parts.ok_or_else(|| Refusal::with(404, "the run is closed"))?;
-    Ok(Answer::of("application/octet-stream", parts))
+    let wait = Duration::from_millis(number_of(query, "wait").unwrap_or(0).min(LONGEST_WAIT));
+    let parts = play.feed.after(&play.live, known, wait);
+    let answer = parts.map(|parts| Answer::of("application/octet-stream", parts));
+    answer.ok_or_else(|| Refusal::with(404, "the run is closed"))
 }
 
 /// Does what a page asks for, in this order, and returns the state.
 fn controlled(player: &mut Player, asked: &Value) -> Result<Value, Refusal> {
     const KEYS: [&str; 5] = ["speed", "follow", "to", "step", "play"];
-    let keys = asked.as_object();
-    let keys = keys.ok_or_else(|| {
-        Refusal::wrong("give an object with some of the keys speed, follow, to, step, play")
-    })?;
+    let Some(keys) = asked.as_object() else {
+        let known = KEYS.join(", ");
+        return Err(Refusal::wrong(format!(
+            "give an object with some of the keys {known}"
+        )));
+    };
     if let Some(unknown) = keys.keys().find(|key| !KEYS.contains(&key.as_str())) {
         return Err(Refusal::wrong(format!(
             "{unknown}: unknown key; there are {}",
@@ -255,9 +256,10 @@ fn decoded(text: &str) -> String {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();
     while let Some((&first, after)) = rest.split_first() {
-        let hex = (first == b'%').then(|| after.get(..2)).flatten();
-        let hex = hex.and_then(|hex| std::str::from_utf8(hex).ok());
-        let byte = hex.and_then(|hex| u8::from_str_radix(hex, 16).ok());
+        let digits = (first == b'%').then(|| after.get(..2)).flatten();
+        let byte = digits
+            .and_then(|digits| std::str::from_utf8(digits).ok())
+            .and_then(|digits| u8::from_str_radix(digits, 16).ok());
         rest = match byte {
             Some(_) => &after[2..],
             None => after,

@@ -78,15 +78,14 @@ impl Played {
         if ending == "json" {
             return Ok(named(Answer::json(&Value::Null)).with(text));
         }
-        let kind = KINDS.iter().find(|kind| kind.ending == ending);
-        let kind = kind.ok_or_else(|| {
-            Refusal::wrong(format!("as: {ending}: give json, html, rrd, pdf or png"))
-        })?;
-        let failed = |error: std::io::Error| Refusal::with(500, error.to_string());
-        let folder = tempfile::tempdir().map_err(failed)?;
+        let Some(kind) = KINDS.iter().find(|kind| kind.ending == ending) else {
+            let message = format!("as: {ending}: give json, html, rrd, pdf or png");
+            return Err(Refusal::wrong(message));
+        };
+        let folder = tempfile::tempdir().map_err(Refusal::failed)?;
         let [from, to] =
             ["json", ending].map(|ending| folder.path().join(format!("{name}.{ending}")));
-        std::fs::write(&from, text).map_err(failed)?;
+        std::fs::write(&from, text).map_err(Refusal::failed)?;
         let after = kind
             .after
             .iter()
@@ -96,7 +95,7 @@ impl Played {
         words.extend(after.map(OsString::from));
         words.push(to.clone().into());
         run(program, &words, folder.path())?;
-        let content = std::fs::read(&to).map_err(failed)?;
+        let content = std::fs::read(&to).map_err(Refusal::failed)?;
         Ok(named(Answer::of(kind.kind, content)))
     }
 }
@@ -113,10 +112,7 @@ impl Answer {
 /// Runs a command of the program; its message if it fails.
 fn run(program: &[OsString], words: &[OsString], folder: &Path) -> Result<(), Refusal> {
     let Some((program, first)) = program.split_first() else {
-        return Err(Refusal::with(
-            500,
-            "the program does not know its own place",
-        ));
+        return Err(Refusal::failed("the program does not know its own place"));
     };
     let done = Command::new(program)
         .args(first)
@@ -125,15 +121,16 @@ fn run(program: &[OsString], words: &[OsString], folder: &Path) -> Result<(), Re
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
-        .output();
-    let done = done.map_err(|error| Refusal::with(500, error.to_string()))?;
+        .output()
+        .map_err(Refusal::failed)?;
     if done.status.success() {
         return Ok(());
     }
     let said = String::from_utf8_lossy(&done.stderr);
-    let last = said.lines().rev().find(|line| line.starts_with("error"));
-    let last = last.or(said.lines().last()).unwrap_or("the program failed");
-    Err(Refusal::with(500, last.trim_start_matches("error: ")))
+    let error = said.lines().rev().find(|line| line.starts_with("error"));
+    let last = error.or(said.lines().last());
+    let words = last.unwrap_or("the program failed");
+    Err(Refusal::failed(words.trim_start_matches("error: ")))
 }
 
 /// A name for files: letters, digits, and what joins them.

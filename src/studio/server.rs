@@ -80,8 +80,8 @@ impl Server {
             program: studio.program,
             plays: Plays::default(),
         };
-        let http = tiny_http::Server::http((Ipv4Addr::LOCALHOST, port));
-        let http = Arc::new(http.map_err(|error| failed(error.to_string()))?);
+        let opened = tiny_http::Server::http((Ipv4Addr::LOCALHOST, port));
+        let http = Arc::new(opened.map_err(|error| failed(error.to_string()))?);
         let address = http.server_addr().to_ip();
         let server = Self {
             address: address.ok_or_else(|| failed("it is no address of the network".to_owned()))?,
@@ -147,11 +147,9 @@ impl Gate {
         let answer = self
             .checked(&mut request)
             .unwrap_or_else(|refusal| refusal.answer());
-        let headers = HEADERS
-            .iter()
-            .copied()
-            .chain([("Content-Type", answer.kind)]);
-        let headers = headers.filter_map(|(name, value)| Header::from_bytes(name, value).ok());
+        let kind = [("Content-Type", answer.kind)];
+        let all = HEADERS.iter().copied().chain(kind);
+        let headers = all.filter_map(|(name, value)| Header::from_bytes(name, value).ok());
         let file = answer.file.as_ref().and_then(|file| {
             Header::from_bytes(
                 "Content-Disposition",
@@ -221,10 +219,10 @@ impl Gate {
             ));
         }
         let origin = value("Origin");
-        let is_own = |origin: &String| origin.strip_prefix("http://").is_some_and(is_own);
+        let is_other = |origin: &String| !origin.strip_prefix("http://").is_some_and(is_own);
         let is_foreign =
             value("Sec-Fetch-Site").is_some_and(|site| site != "same-origin" && site != "none");
-        if origin.as_ref().is_some_and(|origin| !is_own(origin)) || is_foreign {
+        if origin.as_ref().is_some_and(is_other) || is_foreign {
             return Err(Refusal::with(
                 403,
                 "pages from elsewhere cannot use the studio",

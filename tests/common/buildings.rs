@@ -47,6 +47,44 @@ pub fn folded() -> Value {
     })
 }
 
+/// Three storeys above each other that only a lift joins. It has a cabin of 2 m × 2 m behind the waiting areas.
+pub fn tower() -> Value {
+    let floor = json!([[[
+        [0, 0],
+        [12, 0],
+        [12, 8],
+        [7, 8],
+        [7, 10],
+        [5, 10],
+        [5, 8],
+        [0, 8],
+    ]]]);
+    json!({
+        "profile": "steer+sph",
+        "duration_secs": 600,
+        "levels": [
+            {"name": "ground", "elevation": 0, "walkable_area": floor},
+            {"name": "first floor", "elevation": 4, "walkable_area": floor},
+            {"name": "second floor", "elevation": 8, "walkable_area": floor},
+        ],
+        "waiting_areas": [
+            {"name": "lift, ground", "level": "ground", "area": [[4, 5], [8, 5], [8, 7], [4, 7]]},
+            {"name": "lift, first", "level": "first floor", "area": [[4, 5], [8, 5], [8, 7], [4, 7]]},
+            {"name": "lift, second", "level": "second floor", "area": [[4, 5], [8, 5], [8, 7], [4, 7]]},
+        ],
+        "lifts": [{
+            "name": "lift", "cabin": [[5, 8], [7, 8], [7, 10], [5, 10]], "capacity": 6,
+            "stops": ["lift, ground", "lift, first", "lift, second"], "speed": 1, "door_secs": 2,
+        }],
+        "crowds": [
+            {"level": "second floor", "area": [[1, 1], [11, 1], [11, 4], [1, 4]], "number": 15},
+            {"level": "first floor", "area": [[1, 1], [11, 1], [11, 4], [1, 4]], "number": 5},
+        ],
+        "exits": [{"name": "street", "level": "ground", "line": [[0, 2], [0, 4]]}],
+        "stop": {"when_empty": true},
+    })
+}
+
 pub fn read(document: &Value) -> Scenario {
     Scenario::parse(&document.to_string(), "house.json", &[]).unwrap()
 }

@@ -13,6 +13,20 @@ use super::program::PROGRAM;
 /// A run that has not got there after this time hangs.
 const LONGEST: Duration = Duration::from_secs(120);
 
+/// Forty people in a room with a door, which they leave by an exit beyond it.
+pub fn room() -> Value {
+    json!({
+        "name": "room", "profile": "steer+sph", "duration_secs": 30,
+        "walkable_area": [
+            [[[0, 0], [8, 0], [8, 2.5], [8.4, 2.5], [8.4, 0], [12, 0], [12, 6], [8.4, 6], [8.4, 3.5], [8, 3.5], [8, 6],
+              [0, 6]]]
+        ],
+        "exits": [{"name": "out", "line": [[12, 2], [12, 4]]}],
+        "doors": [{"name": "door", "line": [[8.2, 2.5], [8.2, 3.5]]}],
+        "crowds": [{"name": "people", "area": [[0.5, 0.5], [6, 0.5], [6, 5.5], [0.5, 5.5]], "number": 40}],
+    })
+}
+
 /// A studio; it ends when it is dropped.
 pub struct Studio {
     program: Child,

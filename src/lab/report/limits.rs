@@ -53,7 +53,6 @@ fn of_floors(scene: &Scene) -> Vec<String> {
              are zones of lower speed."
         )];
     };
-    let count = levels.all().len();
     let lifts = match scene.journeys.lifts.is_empty() {
         true => "no smoke, no falls and no lifts.",
         false => {
@@ -62,7 +61,7 @@ fn of_floors(scene: &Scene) -> Vec<String> {
         }
     };
     let first = format!(
-        "People are discs on the {count} levels of a building. {know} There are no groups, {lifts}"
+        "People are discs on the levels of a building. {know} There are no groups, {lifts}"
     );
     [first].into_iter().chain(of_slopes(levels)).collect()
 }
@@ -78,19 +77,19 @@ fn of_slopes(levels: &Levels) -> Option<String> {
             None => speeds.push((speed, vec![name])),
         }
     }
-    let listed = speeds.iter().map(|(speed, names)| {
+    let parts = speeds.iter().map(|(speed, names)| {
         let first = names[..names.len().min(NAMED)].join(", ");
         match names.len().saturating_sub(NAMED) {
             0 => format!("{speed} on {first}"),
             more => format!("{speed} on {first} and {more} more"),
         }
     });
-    let listed = listed.collect::<Vec<_>>().join("; ");
+    let listed = parts.collect::<Vec<_>>().join("; ");
     (!speeds.is_empty()).then(|| {
         format!(
             "Stairs, ramps and escalators are planes. People who want {ON_FLOOR} m/s on a floor have these speeds \
              there, seen from above: {listed}. No experiment with a dense crowd on stairs, ramps or escalators is \
-             compared: flows and densities there at more than some 2 P/m² are the model's, not measured ones."
+             compared here: flows and densities there at more than some 2 P/m² are the model's, not measured ones."
         )
     })
 }

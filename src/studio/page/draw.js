@@ -34,7 +34,6 @@ class Drawing {
     on("draw-redo", () => this.redo());
     on("draw-play", () => this.play());
     on("draw-problem", () => this.showProblem());
-    on("draw-mark", () => this.showProblem());
     document.getElementById("draw-level").addEventListener("change", event => this.chooseLevel(event.target.value));
     this.draft.choose("select", true);
   }
@@ -290,12 +289,14 @@ class Drawing {
     line.classList.toggle("wrong", Boolean(problem));
     const count = Number.isFinite(people) ? `, ${people} ${people === 1 ? "person" : "people"} at the start` : "";
     const { wrong } = this, said = wrong && problem.reason ? `${wrong.name}: ${problem.reason}` : problem?.message;
-    line.textContent = this.shapes.length || problem ? said ?? `Ready to play${count}.` : "";
+    const more = notes.length > 1 ? `, and ${notes.length - 1} more below` : "";
+    const noted = notes.length ? ` Note: ${notes[0]}${more}.` : "";
+    line.textContent = this.shapes.length || problem ? said ?? `Ready to play${count}.${noted}` : "";
     const items = notes.map(text => element("li", { textContent: text }));
     document.getElementById("draw-notes").replaceChildren(...items);
-    const noted = document.getElementById("draw-noted");
-    noted.hidden = !notes.length;
-    noted.firstElementChild.textContent = `Notes (${notes.length})`;
+    const list = document.getElementById("draw-noted");
+    list.hidden = !notes.length;
+    list.firstElementChild.textContent = `Notes (${notes.length})`;
     this.elements.show();
     this.form.showProblem();
     this.showAll();

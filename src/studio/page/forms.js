@@ -234,7 +234,8 @@ class Forms {
       this.drawing.corner = null;
       this.drawing.remove();
     });
-    const close = element("button", { id: "draw-unselect", textContent: "×", title: "settings of the scenario (Esc)" });
+    const title = "settings of the scenario (Esc)";
+    const close = element("button", { id: "draw-unselect", textContent: "×", title });
     close.ariaLabel = "settings of the scenario";
     close.addEventListener("click", () => this.drawing.select(null));
     const about = element("p", { className: "soft", textContent: this.measures(shape) });

@@ -4,6 +4,8 @@
 class Player extends Page {
   /** How far the page may stay behind the newest frame, so that people move evenly, seconds of real time. */
   static LATE = 0.06;
+  /** For so long after something was done, the newest frame is shown at once, milliseconds. */
+  static HURRY = 200;
   /** Plots and doors change at most once in this time, milliseconds. */
   static PLOTTING = 500;
   static LISTING = 200;
@@ -43,6 +45,7 @@ class Player extends Page {
     /** The number of drawn pictures. */
     this.pictures = 0;
     this.isBack = false;
+    this.hurries = 0;
     /** Where the followed person was: times and places. */
     this.steps = [];
     this.plotted = this.listed = 0;
@@ -51,7 +54,7 @@ class Player extends Page {
     on("goback", () => this.goBack(this.time));
     on("return", () => this.return());
     on("dismiss", () => this.fail(null));
-    on("back5", () => this.goBack(this.run.state.time - Player.BACK));
+    on("back5", () => this.goBack(this.time - Player.BACK));
     on("fork", () => this.fork());
     on("edit", () => studio.edit(this.run.document));
     on("check", () => this.check());
@@ -101,8 +104,11 @@ class Player extends Page {
   }
 
   /** Changes the run, as an element of `interventions` does; what became of people who were to be added. */
-  intervene(action) {
-    return this.attempt(() => ask(`runs/${this.run.id}/intervene`, action));
+  async intervene(action) {
+    if (this.refusesBack()) return null;
+    const done = await this.attempt(() => ask(`runs/${this.run.id}/intervene`, action));
+    this.hurries = performance.now() + Player.HURRY;
+    return done;
   }
 
   /** Plays or stops; who looks back returns, and the run plays. */
@@ -123,7 +129,15 @@ class Player extends Page {
     return this.control({ to: Math.max(time, 0), ...(playing ? { play: true } : {}) });
   }
 
+  /** Whether one looks back, where nothing can be done; says so. */
+  refusesBack() {
+    if (!this.isBack) return false;
+    this.fail(new Error(`You look at ${this.time.toFixed(2)} s. Press “Go back here” or “Return” first.`));
+    return true;
+  }
+
   async fork() {
+    if (this.refusesBack()) return;
     const forked = await this.attempt(() => ask(`runs/${this.run.id}/fork`, {}));
     if (forked && !open(`${location.pathname}#run=${forked.run}`, "_blank")) {
       this.say(`The browser opened no tab for the fork: it is run ${forked.run} on the start page.`);
@@ -131,6 +145,7 @@ class Player extends Page {
   }
 
   async check() {
+    if (this.refusesBack()) return;
     const found = await this.attempt(() => ask(`runs/${this.run.id}/digest`));
     const text = found ? `state_sha256 ${found.state_sha256} in frame ${found.frame}, ${shown(found.time)} s` : "";
     document.getElementById("digest").textContent = text;
@@ -156,6 +171,11 @@ class Player extends Page {
   seek(time) {
     super.seek(time);
     this.isBack = this.time < this.run.newest - LiveRun.SAME;
+    if (this.isBack && this.run.state.playing) {
+      // The run waits for those who look back.
+      this.run.state = { ...this.run.state, playing: false };
+      this.control({ play: false });
+    }
     this.showBack();
   }
 
@@ -185,7 +205,7 @@ class Player extends Page {
     const { newest, times, state } = this.run;
     const before = this.time;
     if (this.isBack) this.time = Math.max(before, times[0]);
-    else if (!state.playing || state.seeks) this.time = newest;
+    else if (!state.playing || state.seeks || performance.now() < this.hurries) this.time = newest;
     else this.time = this.following(passed, state.behind || state.speed === null ? state.rate : state.speed);
     if (this.time !== before) this.isDirty = true;
   }
@@ -208,6 +228,7 @@ class Player extends Page {
     this.time = Math.min(this.time, this.run.newest);
     this.isDirty = true;
     this.showState();
+    this.refreshPlan();
     const now = performance.now();
     if (now - this.listed >= Player.LISTING || !this.run.state.playing) {
       this.listed = now;
@@ -222,6 +243,19 @@ class Player extends Page {
     this.showEnds();
   }
 
+  /** Draws the plan anew when a door has opened or closed. */
+  async refreshPlan() {
+    const closed = this.run.state.doors.filter(door => !door.open).map(door => door.name).join("\n");
+    if (closed === this.closed) return;
+    const isFirst = this.closed === undefined;
+    this.closed = closed;
+    if (isFirst) return;
+    const found = await this.attempt(() => ask(`runs/${this.run.id}`));
+    if (!found) return;
+    Object.assign(this.scene, { below: found.scene.below, above: found.scene.above });
+    this.plan.isStale = this.isDirty = true;
+  }
+
   showState() {
     const { state, isConnected, closed } = this.run, $ = id => document.getElementById(id);
     if (this.playing !== state.playing) {
@@ -233,7 +267,7 @@ class Player extends Page {
     const isSlow = state.behind && state.rate !== null;
     const slow = isSlow ? `This speed is too fast: ${shown(state.rate, 2)} × is reached.` : "";
     const fastest = state.playing && state.speed === null && state.rate ? `${shown(state.rate, 1)} ×` : "";
-    const end = state.end && !state.playing ? `The run has ended: ${state.end}. Play goes on.` : "";
+    const end = state.end && !state.playing ? `The run has ended: ${state.end}. Play goes on beyond it.` : "";
     const away = isConnected ? "" : "The program has ended; the page keeps what it has.";
     $("going").textContent = closed || away || state.fault || (state.seeks ? "on the way …" : end || slow || fastest);
     $("going").classList.toggle("wrong", Boolean(closed || away || state.fault));
@@ -351,7 +385,7 @@ class Player extends Page {
     const { tagName } = event.target, isTyping = ["SELECT", "INPUT", "TEXTAREA"].includes(tagName);
     if (isTyping && event.key !== "Escape" || tagName === "SUMMARY" && event.key === " ") return;
     if (this.tools.key(event)) event.preventDefault();
-    else if (event.key.toLowerCase() === "b") this.goBack(this.run.state.time - Player.BACK);
+    else if (event.key.toLowerCase() === "b") this.goBack(this.time - Player.BACK);
     else super.key(event);
   }
 }

@@ -214,6 +214,8 @@ class Studio {
     const field = document.getElementById("name"), isDrawn = this.mode === "draw";
     const name = this.mode === "play" ? this.player?.run.name : this.document.name;
     field.hidden = this.mode === "start";
+    const run = this.mode === "play" && this.player ? ` (run ${this.player.run.id})` : "";
+    document.title = this.mode === "start" ? "sandbox studio" : `${name || "drawing"}${run} – sandbox studio`;
     field.readOnly = !isDrawn;
     if (field !== document.activeElement) field.value = name ?? "";
     for (const button of document.querySelectorAll("#save [data-mode]")) button.hidden = this.mode !== "play";

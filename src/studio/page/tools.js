@@ -103,7 +103,16 @@ class PushTool extends CrowdTool {
       name: "push", region, for_secs: PushTool.SECS, acceleration: [[0, value], [PushTool.SECS, value]],
       direction: way.map(x => toThousandths(x / length)),
     };
-    if (await this.player.intervene({ push })) this.player.say(`A push of ${shown(acceleration, 1)} m/s².`);
+    const people = this.count(from, half), those = people === 1 ? "1 person" : `${people} people`;
+    const said = people ? `A push of ${shown(acceleration, 1)} m/s² for ${those}.` : "Nobody is there to be pushed.";
+    if (await this.player.intervene({ push })) this.player.say(said);
+  }
+
+  /** The number of people in the square around a place. */
+  count([x, y], half) {
+    let count = 0;
+    this.player.people.each((px, py) => count += Math.abs(px - x) <= half && Math.abs(py - y) <= half);
+    return count;
   }
 
   draw(pen, place) {
