@@ -282,11 +282,12 @@ impl Player {
         let simulation = &self.run.simulation;
         let frame = simulation.frame();
         let end = self.ended == Some(frame.clock.frame());
+        let doors = self.doors.now(&self.run, self.observed_from);
         json!({
             "playing": self.pace.playing, "speed": self.pace.speed, "time": frame.clock.time(),
             "frame": frame.clock.frame(), "end": end.then(|| self.run.reason()), "fault": self.fault,
             "people": frame.agents.count_present(), "behind": self.pace.playing && self.pace.behind,
-            "rate": self.pace.rate.filter(|_| self.pace.playing), "doors": self.doors.now(&self.run, self.observed_from),
+            "rate": self.pace.rate.filter(|_| self.pace.playing), "doors": doors,
             "done": simulation.interventions().len(), "warnings": self.warnings, "seeks": self.target.is_some(),
             "followed": self.followed,
         })
@@ -337,7 +338,7 @@ impl Player {
     /// The time is not within the run, or an earlier frame is not known.
     pub fn go_to(&mut self, secs: f64) -> Result<(), Refusal> {
         let clock = *self.run.simulation.frame().clock;
-        if !(secs.is_finite() && secs >= 0.0 && secs <= 1e7) {
+        if !(0.0..=1e7).contains(&secs) {
             return Err(Refusal::wrong("to: give a time in seconds, from 0 on"));
         }
         self.stop();

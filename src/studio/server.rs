@@ -71,7 +71,7 @@ impl Server {
     /// # Errors
     /// The scenario is wrong, or the port is taken.
     pub fn start(studio: Studio) -> Result<Self, ServerError> {
-        let given = studio.scenario.as_ref().map(|source| given(source));
+        let given = studio.scenario.as_ref().map(given);
         let port = studio.port.unwrap_or(0);
         let failed = |cause: String| ServerError::Port { port, cause };
         let answers = Answers {

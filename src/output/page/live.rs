@@ -31,8 +31,8 @@ impl Live {
     }
 
     /// The time series, the people and the forces of some moments, as in pages but not compressed: they are read at
-    /// once, on the same machine. The part begins with the moment `before`, if there is one. `more` is added to the time
-    /// series. Without moments there are no people.
+    /// once, on the same machine. The part begins with the moment `before`, if there is one. `more` is added to the
+    /// time series. Without moments there are no people.
     pub fn part(
         &self,
         before: Option<&Coded>,

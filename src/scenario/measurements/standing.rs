@@ -9,8 +9,8 @@ pub const GAP: f64 = 3.0;
 /// Time between two observations, seconds.
 pub(super) const EVERY: f64 = 1.0;
 
-/// Whether an agent walks slower than [`SLOW`] times the speed that it would like to walk at: on stairs, the speed there,
-/// and on an escalator, with that of the belt.
+/// Whether an agent walks slower than [`SLOW`] times the speed that it would like to walk at: on stairs, the speed
+/// there, and on an escalator, with that of the belt.
 pub(super) fn is_slow(simulation: &Simulation, agent: usize) -> bool {
     let (frame, scene) = (simulation.frame(), simulation.scene());
     let wished = frame.fields.preferred_velocity.get(agent);
