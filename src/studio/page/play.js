@@ -29,9 +29,10 @@ class Player extends Page {
     return Player.current = new Player(run);
   }
 
-  /** Stops asking for frames. The run itself stays with the program. */
+  /** Stops asking for frames. The run itself stays with the program, and waits. */
   close() {
     this.ending.abort();
+    if (this.run.state.playing) ask(`runs/${this.run.id}/control`, { play: false }).catch(() => {});
   }
 
   setUp() {
