@@ -247,7 +247,10 @@ fn broken_messages_are_refused_and_change_nothing() {
         assert_eq!(post(&format!("{run}/intervene"), body), 400);
     }
     for (what, status) in [
-        (json!({"add": {"group": "nobody", "positions": [[5, 5]]}}), 422),
+        (
+            json!({"add": {"group": "nobody", "positions": [[5, 5]]}}),
+            422,
+        ),
         (json!({"close": "no such door"}), 422),
         (json!({"push": {"region": [[0, 0], [1, 1]]}}), 422),
         (json!({"remove": [77]}), 422),

@@ -50,8 +50,6 @@ pub struct Player {
     target: Option<u64>,
     pace: Pace,
     shown: Instant,
-    /// Whether something was done that pages have not seen.
-    is_awaited: bool,
     warnings: Vec<String>,
 }
 
@@ -143,7 +141,6 @@ impl Player {
                 measured: (now, time),
             },
             shown: now,
-            is_awaited: false,
             warnings: Vec::new(),
         };
         player.observe();
@@ -187,14 +184,12 @@ impl Player {
     /// Computes the frames that are due, for at most a short while.
     pub fn play(&mut self) {
         let start = Instant::now();
-        let before = self.run.simulation.frame().clock.frame();
         while start.elapsed() < SLICE && self.is_due() {
             if !self.step() {
                 break;
             }
         }
         let clock = self.run.simulation.frame().clock;
-        let is_seen = self.is_awaited && clock.frame() > before;
         self.pace.reach(clock.time());
         if let Some(target) = self.target {
             if clock.frame() >= target {
@@ -202,10 +197,7 @@ impl Player {
                 self.pace.begin(clock.time());
                 self.show(true);
             }
-        } else if is_seen
-            || self.shown.elapsed().as_secs_f64() >= 1.0 / PICTURES
-            || !self.pace.playing
-        {
+        } else if self.shown.elapsed().as_secs_f64() >= 1.0 / PICTURES || !self.pace.playing {
             self.show(false);
         }
         self.tell();
@@ -268,7 +260,6 @@ impl Player {
         let moment = Moment::of(simulation, &crowd, (self.events.evacuated, new), &debug);
         self.feed.add(self.live.coded(&moment), is_back);
         self.shown = Instant::now();
-        self.is_awaited = false;
         self.tell();
     }
 
@@ -364,8 +355,8 @@ impl Player {
         self.show(false);
     }
 
-    /// Does what an element of the list `interventions` says, at the beginning of the next frame. Without play this
-    /// frame is computed at once, to show it.
+    /// Does what an element of the list `interventions` says, at the beginning of the next frame. This frame is computed
+    /// at once, to show it.
     ///
     /// # Errors
     /// A key or a name is unknown, a number is out of range, or the action is not possible.
@@ -394,11 +385,8 @@ impl Player {
                 .for_each(|other| *other += 1);
             added.without_room.insert(later, place);
         }
-        self.is_awaited = true;
-        if !self.pace.playing {
-            self.step();
-            self.show(false);
-        }
+        self.step();
+        self.show(false);
         Ok(added)
     }
 
