@@ -355,8 +355,8 @@ impl Player {
         self.show(false);
     }
 
-    /// Does what an element of the list `interventions` says, at the beginning of the next frame. This frame is computed
-    /// at once, to show it.
+    /// Does what an element of the list `interventions` says, at the beginning of the next frame, which is computed at
+    /// once, to show it.
     ///
     /// # Errors
     /// A key or a name is unknown, a number is out of range, or the action is not possible.
