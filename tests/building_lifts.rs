@@ -19,7 +19,7 @@ const LONGEST: u32 = 100_000;
 #[test]
 fn people_who_cannot_walk_down_take_the_lift() {
     let scenario = read(&tower());
-    // The stops are used, though nobody names them.
+    // The stops of lifts count as used places.
     assert_eq!(scenario.notes, [""; 0]);
     // For each change of a level of a person: the time step, and the place before and after it.
     let mut last = BTreeMap::new();

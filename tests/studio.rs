@@ -310,6 +310,21 @@ fn broken_messages_are_refused_and_change_nothing() {
     }
     assert_eq!(digest(&studio, &run), before);
     assert_eq!(studio.control(&run, &json!({}))["done"], 0);
+    // On the way to another time, no frame in between is taken for the one that is shown.
+    let other = studio.begin(&room());
+    studio.control(&other, &json!({"to": 1e5}));
+    for what in ["digest", "person?id=1", "saved?as=json"] {
+        assert_eq!(studio.get(&format!("{other}/{what}")).status, 409, "{what}");
+    }
+    for (path, what) in [
+        ("intervene", json!({"remove": [1]})),
+        ("fork", json!({})),
+        ("control", json!({"step": 1})),
+    ] {
+        let reply = studio.post(&format!("{other}/{path}"), &what);
+        assert_eq!(reply.status, 409, "{path}");
+    }
+    studio.ask(&format!("{other}/close"), &json!({}));
 }
 
 #[test]

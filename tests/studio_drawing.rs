@@ -22,7 +22,7 @@ fn drawings_are_checked_with_the_places_of_their_problems() {
         document
     };
     let line = |a: [f64; 2], b: [f64; 2]| json!([a, b]);
-    let wrong: [(Value, &str); 20] = [
+    let wrong: [(Value, &str); 22] = [
         (changed("/crowds/0/number", json!(0)), "crowds[0].number"),
         (changed("/crowds/0/number", json!(4000)), "crowds[0]"),
         (
@@ -82,7 +82,21 @@ fn drawings_are_checked_with_the_places_of_their_problems() {
             "zones[0].speed_factor",
         ),
         (
-            with("from", json!({"trajectory": "/tmp/x.sqlite"})),
+            with(
+                "events",
+                json!([{"name": "push", "acceleration": "wave.txt"}]),
+            ),
+            "events[0].acceleration",
+        ),
+        (
+            with(
+                "levels",
+                json!([{"name": "ground", "walkable_area": "ground.wkt"}]),
+            ),
+            "levels[0].walkable_area",
+        ),
+        (
+            with("from", json!({"trajectory": "people.sqlite"})),
             "from.trajectory",
         ),
     ];

@@ -20,7 +20,7 @@ pub struct Egress {
     /// The exits at which people have left, in the order of the scenario, with the times of all people, seconds,
     /// ascending.
     pub exits: Vec<(String, Vec<f64>)>,
-    /// The number of people who are there in the last frame.
+    /// The number of people present in the last frame.
     pub remaining: u32,
     /// The time of the last frame, seconds.
     pub until: f64,

@@ -43,7 +43,7 @@ pub struct Refusal {
     pub status: u16,
     /// The place in the scenario: a key path, or nothing.
     pub path: String,
-    /// What is wrong there.
+    /// The reason.
     pub reason: String,
     /// The whole sentence.
     pub message: String,

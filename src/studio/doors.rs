@@ -1,4 +1,4 @@
-//! Exits, doors and entrances of a run: whether they are open, who has passed, how many per second.
+//! State, counts and flows of the exits, doors and entrances of a run.
 
 use std::collections::VecDeque;
 

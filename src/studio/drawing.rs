@@ -172,16 +172,31 @@ pub fn check(document: &Value, memory: Option<u64>) -> Value {
 /// Pages bring all that they need: files of this machine are not theirs to read.
 fn names_no_file(document: &Value) -> Result<(), Refusal> {
     const PLANS: [&str; 2] = ["walkable_area", "obstacles"];
-    let is_name = |path: &str| document.pointer(path).is_some_and(Value::is_string);
-    let levels = document["levels"].as_array().map_or(0, Vec::len);
-    let of_levels = (0..levels).flat_map(|k| PLANS.map(|key| format!("levels/{k}/{key}")));
-    let whole = ["levels".to_owned(), "from/trajectory".to_owned()];
-    let of_plan = PLANS.map(str::to_owned).into_iter();
-    let mut all = of_plan.chain(of_levels).chain(whole);
-    let Some(path) = all.find(|path| is_name(&format!("/{path}"))) else {
-        return Ok(());
+    let in_list = |list: &'static str, keys: &'static [&'static str]| {
+        let count = document[list].as_array().map_or(0, Vec::len);
+        let paths = move |k| keys.iter().map(move |key| (list, Some(k), *key));
+        (0..count).flat_map(paths)
     };
-    let path = path.replace('/', ".");
+    let at_top = ["walkable_area", "obstacles", "levels"].map(|key| ("", None, key));
+    let mut all = at_top
+        .into_iter()
+        .chain([("from", None, "trajectory")])
+        .chain(in_list("levels", &PLANS))
+        .chain(in_list("events", &["acceleration"]));
+    let named = all.find(|&(list, k, key)| {
+        let owner = match (list, k) {
+            ("", _) => document,
+            (_, Some(k)) => &document[list][k],
+            (_, None) => &document[list],
+        };
+        owner[key].is_string()
+    });
+    let path = match named {
+        None => return Ok(()),
+        Some(("", _, key)) => key.to_owned(),
+        Some((list, None, key)) => format!("{list}.{key}"),
+        Some((list, Some(k), key)) => format!("{list}[{k}].{key}"),
+    };
     let reason = "a drawing has no other files; open the file itself";
     Err(Refusal {
         status: 422,

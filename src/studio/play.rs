@@ -88,7 +88,7 @@ impl Play {
     }
 }
 
-/// Plays a run until nobody can ask for anything.
+/// Plays a run until all handles to it are dropped.
 fn follow(mut player: Player, tasks: &Receiver<Task>) {
     const FOREVER: Duration = Duration::from_secs(3600);
     loop {

@@ -1,5 +1,6 @@
 //! A run that is played: at the speed asked for, set back, changed from outside. It lives on a thread of its own.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -27,6 +28,8 @@ const PICTURES: f64 = 30.0;
 const SLICE: Duration = Duration::from_millis(20);
 /// A run that is this much late is too slow for its speed, seconds of real time.
 const LATE: f64 = 0.25;
+/// The speeds, seconds of the run per second.
+const SPEEDS: RangeInclusive<f64> = 0.001..=1e6;
 /// The time over which the reached speed is measured.
 const MEASURED: Duration = Duration::from_secs(1);
 
@@ -146,6 +149,7 @@ impl Player {
         player.observe();
         player.warn();
         player.show(false);
+        player.tell();
         Ok(player)
     }
 
@@ -184,6 +188,7 @@ impl Player {
     /// Computes the frames that are due, for at most a short while.
     pub fn play(&mut self) {
         let start = Instant::now();
+        let target = self.target;
         while start.elapsed() < SLICE && self.is_due() {
             if !self.step() {
                 break;
@@ -191,8 +196,9 @@ impl Player {
         }
         let clock = self.run.simulation.frame().clock;
         self.pace.reach(clock.time());
-        if let Some(target) = self.target {
-            if clock.frame() >= target {
+        if let Some(target) = target {
+            // After a fault it ends here.
+            if clock.frame() >= target || self.target.is_none() {
                 self.target = None;
                 self.pace.begin(clock.time());
                 self.show(true);
@@ -260,7 +266,6 @@ impl Player {
         let moment = Moment::of(simulation, &crowd, (self.events.evacuated, new), &debug);
         self.feed.add(self.live.coded(&moment), is_back);
         self.shown = Instant::now();
-        self.tell();
     }
 
     /// Tells pages the state.
@@ -298,12 +303,13 @@ impl Player {
     /// Sets the speed: seconds of the run per second; `None`: as fast as it can.
     ///
     /// # Errors
-    /// The speed is not above 0.
+    /// The speed is out of range.
     pub fn set_speed(&mut self, speed: Option<f64>) -> Result<(), Refusal> {
-        if speed.is_some_and(|speed| !(speed.is_finite() && speed > 0.0)) {
-            return Err(Refusal::wrong(
-                "speed: give a number above 0, or null for as fast as possible",
-            ));
+        if speed.is_some_and(|speed| !SPEEDS.contains(&speed)) {
+            let [least, most] = [SPEEDS.start(), SPEEDS.end()];
+            return Err(Refusal::wrong(format!(
+                "speed: give a number from {least} to {most}, or null for as fast as possible"
+            )));
         }
         self.pace.speed = speed;
         self.pace.begin(self.run.simulation.frame().clock.time());
@@ -311,8 +317,31 @@ impl Player {
         Ok(())
     }
 
+    /// Whether the run is in a frame that pages show: not on its way to another time.
+    ///
+    /// # Errors
+    /// It is.
+    fn check_shown(&self) -> Result<(), Refusal> {
+        let message = "the run is on its way to another time; wait until it is there";
+        let seeks = self.target.map(|_| Refusal::with(409, message));
+        seeks.map_or(Ok(()), Err)
+    }
+
+    /// The run, evaluated, in a frame that pages show.
+    ///
+    /// # Errors
+    /// It is on its way to another time.
+    pub fn shown(&self) -> Result<&Run, Refusal> {
+        self.check_shown()?;
+        Ok(&self.run)
+    }
+
     /// Stops, and computes some frames.
-    pub fn step_by(&mut self, frames: u64) {
+    ///
+    /// # Errors
+    /// The run is on its way to another time.
+    pub fn step_by(&mut self, frames: u64) -> Result<(), Refusal> {
+        self.check_shown()?;
         self.stop();
         for _ in 0..frames {
             if !self.step() {
@@ -321,6 +350,7 @@ impl Player {
             self.show(false);
         }
         self.tell();
+        Ok(())
     }
 
     /// Goes to a time, back or on, and stops there: to the frame nearest to it.
@@ -352,7 +382,10 @@ impl Player {
     /// Shows the forces on a person from now on.
     pub fn follow(&mut self, id: Option<u32>) {
         self.followed = id;
-        self.show(false);
+        if self.target.is_none() {
+            self.show(false);
+        }
+        self.tell();
     }
 
     /// Does what an element of the list `interventions` says, at the beginning of the next frame, which is computed at
@@ -361,12 +394,7 @@ impl Player {
     /// # Errors
     /// A key or a name is unknown, a number is out of range, or the action is not possible.
     pub fn intervene(&mut self, keys: &Value) -> Result<Added, Refusal> {
-        if self.target.is_some() {
-            return Err(Refusal::with(
-                409,
-                "the run is on its way to another time; wait until it is there",
-            ));
-        }
+        self.check_shown()?;
         let (keys, off_floor) = self.on_floor(keys);
         if !off_floor.is_empty() && keys["add"]["positions"] == json!([]) {
             return Ok(Added {
@@ -387,6 +415,7 @@ impl Player {
         }
         self.step();
         self.show(false);
+        self.tell();
         Ok(added)
     }
 
@@ -423,18 +452,18 @@ impl Player {
     /// A copy of the run in the same frame, for another page.
     ///
     /// # Errors
-    /// A measurement cannot be copied.
+    /// A measurement cannot be copied, or the run is on its way to another time.
     pub fn fork(&self, feed: Arc<Feed>) -> Result<Self, Refusal> {
-        let run = self.run.fork().map_err(Refusal::failed)?;
+        let run = self.shown()?.fork().map_err(Refusal::failed)?;
         Self::of(run, Some(self.events.clone()), feed)
     }
 
     /// The forces on a person, as `sandbox inspect --json` has them.
     ///
     /// # Errors
-    /// The person is not there.
+    /// The person is not there, or the run is on its way to another time.
     pub fn person(&self, id: u32) -> Result<Value, Refusal> {
-        let simulation = &self.run.simulation;
+        let simulation = &self.shown()?.simulation;
         let present = simulation.present(id);
         let i = present.map_err(|why| Refusal::with(404, format!("person {id}: {why}")))?;
         let breakdown = Breakdown::of(simulation, i)
@@ -443,11 +472,15 @@ impl Player {
     }
 
     /// The digest of the state, with its time and frame.
-    pub fn digest(&self) -> Value {
-        let clock = self.run.simulation.frame().clock;
-        json!({
-            "state_sha256": self.run.simulation.digest(), "time": clock.time(), "frame": clock.frame(),
-        })
+    ///
+    /// # Errors
+    /// The run is on its way to another time.
+    pub fn digest(&self) -> Result<Value, Refusal> {
+        let simulation = &self.shown()?.simulation;
+        let clock = simulation.frame().clock;
+        Ok(json!({
+            "state_sha256": simulation.digest(), "time": clock.time(), "frame": clock.frame(),
+        }))
     }
 }
 

@@ -114,17 +114,16 @@ impl Answers {
                     .map_err(|_| Refusal::wrong("id: there is no such person"))?;
                 Ok(Answer::json(&play.ask(move |player| player.person(id))??))
             }
-            (false, "digest") => Ok(Answer::json(&play.ask(|player| player.digest())?)),
+            (false, "digest") => Ok(Answer::json(&play.ask(|player| player.digest())??)),
             (false, "saved") => {
                 let ending = query.get("as").map_or("json", String::as_str);
                 let played = play.ask(|player| {
-                    let run = player.run();
-                    Played {
+                    player.shown().map(|run| Played {
                         scenario: (*run.scenario).clone(),
                         document: run.played(),
                         time: run.simulation.frame().clock.time(),
-                    }
-                })?;
+                    })
+                })??;
                 played.file(ending, &self.program)
             }
             (true, "control") => {
@@ -205,7 +204,7 @@ fn controlled(player: &mut Player, asked: &Value) -> Result<Value, Refusal> {
             Refusal::wrong(format!(
                 "step: give a number of frames, from 0 to {MOST_FRAMES}"
             ))
-        })?);
+        })?)?;
     }
     if let Some(play) = keys.get("play") {
         let play = play.as_bool();

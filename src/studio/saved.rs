@@ -76,7 +76,7 @@ impl Played {
         };
         let text = self.text();
         if ending == "json" {
-            return Ok(named(Answer::json(&Value::Null)).with(text));
+            return Ok(named(Answer::of("application/json", text)));
         }
         let Some(kind) = KINDS.iter().find(|kind| kind.ending == ending) else {
             let message = format!("as: {ending}: give json, html, rrd, pdf or png");
@@ -97,15 +97,6 @@ impl Played {
         run(program, &words, folder.path())?;
         let content = std::fs::read(&to).map_err(Refusal::failed)?;
         Ok(named(Answer::of(kind.kind, content)))
-    }
-}
-
-impl Answer {
-    fn with(self, text: String) -> Self {
-        Self {
-            content: text.into_bytes(),
-            ..self
-        }
     }
 }
 

@@ -200,7 +200,6 @@ impl Gate {
             query,
             body: &body,
         };
-        // Reading and placing work in parallel.
         Ok(self.answers.to(&asked))
     }
 

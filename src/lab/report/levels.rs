@@ -31,7 +31,7 @@ struct Row {
     level: String,
     start: u32,
     most: u32,
-    /// When most people were there for the first time, and since when nobody is, seconds.
+    /// The time of the first maximum, and the time from which on the level is empty, seconds.
     most_at: f64,
     empty_from: Option<f64>,
     end: u32,
