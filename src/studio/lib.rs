@@ -16,6 +16,8 @@ mod snapshots;
 
 mod doors;
 
+mod pace;
+
 mod player;
 
 mod controls;

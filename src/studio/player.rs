@@ -20,18 +20,15 @@ use serde_json::{Value, json};
 use crate::answer::Refusal;
 use crate::doors::Doors;
 use crate::feed::Feed;
+use crate::pace::Pace;
 use crate::snapshots::Snapshots;
 
 /// The most pictures per second that pages get.
 const PICTURES: f64 = 30.0;
 /// The longest time between two looks at what is asked for.
 const SLICE: Duration = Duration::from_millis(20);
-/// A run that is this much late is too slow for its speed, seconds of real time.
-const LATE: f64 = 0.25;
 /// The speeds, seconds of the run per second.
 const SPEEDS: RangeInclusive<f64> = 0.001..=1e6;
-/// The time over which the reached speed is measured.
-const MEASURED: Duration = Duration::from_secs(1);
 
 /// A run that is played.
 pub struct Player {
@@ -56,55 +53,6 @@ pub struct Player {
     warnings: Vec<String>,
 }
 
-/// The speed at which a run is played.
-struct Pace {
-    playing: bool,
-    /// Seconds of the run per second; `None`: as fast as it can.
-    speed: Option<f64>,
-    /// A moment, and the time of the run at it.
-    since: (Instant, f64),
-    behind: bool,
-    /// The reached speed, and since when it is measured.
-    rate: Option<f64>,
-    measured: (Instant, f64),
-}
-
-impl Pace {
-    fn begin(&mut self, time: f64) {
-        let now = Instant::now();
-        self.since = (now, time);
-        self.measured = (now, time);
-        self.rate = None;
-        self.behind = false;
-    }
-
-    /// The time that the run should have reached, seconds.
-    fn due(&self) -> f64 {
-        let (since, time) = self.since;
-        self.speed.map_or(f64::INFINITY, |speed| {
-            time + speed * since.elapsed().as_secs_f64()
-        })
-    }
-
-    /// Notes the time that the run has reached.
-    fn reach(&mut self, time: f64) {
-        let (since, from) = self.measured;
-        if since.elapsed() >= MEASURED {
-            self.rate = Some((time - from) / since.elapsed().as_secs_f64());
-            self.measured = (Instant::now(), time);
-        }
-        let Some(speed) = self.speed else {
-            return;
-        };
-        let late = self.due() - time > LATE * speed;
-        if late {
-            // What is lost is not made up for.
-            self.since = (Instant::now(), time);
-        }
-        self.behind = late || self.behind && self.rate.is_some_and(|rate| rate < 0.95 * speed);
-    }
-}
-
 impl Player {
     /// A run of a scenario in its first frame, its page, and where it leaves its frames.
     ///
@@ -120,7 +68,6 @@ impl Player {
         run.simulation.request_density_until(u64::MAX);
         run.simulation.evaluate().map_err(Refusal::impossible)?;
         let (live, drawing) = page(&run);
-        let now = Instant::now();
         let time = run.simulation.frame().clock.time();
         let mut player = Self {
             events: events.unwrap_or_else(|| Events::new(run.scenario.entering)),
@@ -135,15 +82,8 @@ impl Player {
             observed_from: time,
             fault: None,
             target: None,
-            pace: Pace {
-                playing: false,
-                speed: Some(1.0),
-                since: (now, time),
-                behind: false,
-                rate: None,
-                measured: (now, time),
-            },
-            shown: now,
+            pace: Pace::at(time),
+            shown: Instant::now(),
             warnings: Vec::new(),
         };
         player.observe();
