@@ -184,3 +184,87 @@ fn plans_and_scenarios_of_others_are_opened() {
     }
     assert_eq!(import("..", b"").status, 400);
 }
+
+#[test]
+fn a_scenario_is_opened_with_the_files_that_it_names() {
+    let studio = Studio::start(&[]);
+    let plan = std::fs::read("scenarios/office.geojson").unwrap();
+    let scenario = std::fs::read("scenarios/office.json").unwrap();
+    let import = |files: &[(&str, &[u8])]| {
+        let list: Vec<_> = files
+            .iter()
+            .map(|(name, content)| json!([name, content.len()]))
+            .collect();
+        let list = json!(list).to_string().replace('"', "%22");
+        let path = format!("{}import?files={list}", studio.root);
+        let body: Vec<u8> = files.iter().flat_map(|(_, content)| content.to_vec()).collect();
+        studio.with("POST", &path, &[], &body)
+    };
+    let both = [("office.geojson", &plan[..]), ("office.json", &scenario[..])];
+    let opened = import(&both);
+    let text = String::from_utf8_lossy(&opened.content).into_owned();
+    assert_eq!(opened.status, 200, "{text}");
+    let whole = studio.ask("example?name=office", &Value::Null);
+    assert_eq!(opened.json()["document"], whole["document"]);
+    // In a folder of its own, as the scenario names it.
+    let inner = String::from_utf8(scenario.clone()).unwrap();
+    let inner = inner.replace("\"office.geojson\"", "\"plans/floor/office.geojson\"");
+    let opened = import(&[both[0], ("office.json", inner.as_bytes())]);
+    assert_eq!(opened.json()["document"], whole["document"]);
+    // Alone, twice, with a stranger, and with wrong lengths.
+    let said = |reply: common::studio::Reply, status: u16| {
+        assert_eq!(reply.status, status);
+        reply.json()["error"]["message"].as_str().unwrap().to_owned()
+    };
+    let alone = said(import(&both[1..]), 422);
+    assert!(alone.contains("office.geojson") && alone.contains("together"), "{alone}");
+    let other = said(import(&[both[1], ("hall.wkt", b"POLYGON ((0 0, 1 0, 1 1, 0 0))")]), 400);
+    assert!(other.contains("names no file hall.wkt"), "{other}");
+    let outside = inner.replace("plans/floor/", "../");
+    let outside = said(import(&[both[0], ("office.json", outside.as_bytes())]), 400);
+    assert!(outside.contains("names no file office.geojson"), "{outside}");
+    for list in ["[]", "[[%22a.wkt%22,9]]", "[[%22a.wkt%22,1]]", "x"] {
+        let path = format!("{}import?files={list}", studio.root);
+        let message = said(studio.with("POST", &path, &[], b"POL"), 400);
+        assert!(message.starts_with("files: "), "{message}");
+    }
+}
+
+#[test]
+fn drawings_are_kept_when_their_tab_is_closed() {
+    let studio = Studio::start(&[]);
+    let kept = || studio.ask("start", &Value::Null)["drawings"].clone();
+    assert_eq!(kept(), json!([]));
+    // What was only looked at is not kept; what was changed is, also while it is wrong.
+    studio.ask("check", &room());
+    assert_eq!(kept(), json!([]));
+    let mut wrong = room();
+    wrong["name"] = json!("wrong");
+    wrong["crowds"][0]["number"] = json!(100_000);
+    let found = studio.ask("check?drawing=a-1", &wrong);
+    assert_eq!(found["problem"]["path"], "crowds[0].number");
+    studio.ask("check?drawing=b-2", &room());
+    let list = kept();
+    assert_eq!(list[0]["key"], "b-2");
+    assert_eq!(list[1], json!({"key": "a-1", "name": "wrong", "age_secs": list[1]["age_secs"]}));
+    assert!(list[1]["age_secs"].as_u64().unwrap() < 600);
+    let opened = studio.ask("drawings/a-1", &Value::Null);
+    assert_eq!(opened["document"], wrong);
+    // The latest state counts, and comes first.
+    wrong["crowds"][0]["number"] = json!(7);
+    studio.ask("check?drawing=a-1", &wrong);
+    assert_eq!(kept()[0]["key"], "a-1");
+    assert_eq!(studio.ask("drawings/a-1", &Value::Null)["document"], wrong);
+    studio.ask("drawings/b-2/forget", &json!({}));
+    assert_eq!(studio.get("drawings/b-2").status, 404);
+    assert_eq!(studio.post("drawings/b-2/forget", &json!({})).status, 404);
+    for key in ["", &"k".repeat(65)] {
+        assert_eq!(studio.post(&format!("check?drawing={key}"), &room()).status, 400);
+    }
+    // No more than twenty.
+    for k in 0..20 {
+        studio.ask(&format!("check?drawing=more-{k}"), &room());
+    }
+    assert_eq!(kept().as_array().unwrap().len(), 20);
+    assert_eq!(studio.get("drawings/a-1").status, 404);
+}

@@ -54,7 +54,6 @@ mod manual;
 pub use arguments::{ErrorOptions, PrintOptions};
 pub use bench::{ResultOptions, TimingOptions};
 pub use failure::Failure;
-pub use output::recording_options;
 pub use results::json as json_report;
 pub use update::{CaseOptions, UpdateOptions};
 pub use watch::Watch;

@@ -10,6 +10,7 @@ use serde_json::json;
 use super::arguments::use_threads;
 use super::failure::Failure;
 use super::interrupt::Interrupt;
+use super::output::viewer;
 use super::terminal::{talk, tell};
 use super::values::threads;
 use lab::machine::main_memory;
@@ -32,6 +33,12 @@ pub struct StudioOptions {
     /// Print the address of the page only
     #[arg(long)]
     pub no_browser: bool,
+    /// Show the runs live in a Rerun viewer, too; starts one if none is running
+    #[arg(long)]
+    pub spawn: bool,
+    /// Show the runs live in the viewer at this address, too: rerun+http://HOST:PORT/proxy, or HOST:PORT
+    #[arg(long, value_name = "URL", conflicts_with = "spawn")]
+    pub connect: Option<String>,
     /// Number of threads; the results do not depend on it [default: all cores]
     #[arg(long, value_parser = threads)]
     pub threads: Option<usize>,
@@ -47,11 +54,12 @@ pub fn run(options: &StudioOptions) -> Result<(), Failure> {
         scenario: options.scenario.clone().map(Source::at),
         port: options.port,
         memory: main_memory(),
+        viewer: viewer(options.connect.as_deref(), options.spawn)?,
         program: program(),
     };
     let server = Server::start(studio).map_err(|error| match error {
         ServerError::Scenario(_) => Failure::Input(error.to_string()),
-        ServerError::Port { .. } => Failure::Output(error.to_string()),
+        ServerError::Viewer(_) | ServerError::Port { .. } => Failure::Output(error.to_string()),
     })?;
     let address = server.address();
     tell(

@@ -1,6 +1,6 @@
 //! What pages draw: checks of a scenario, files that are opened, examples.
 
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 use runs::case::Source;
 use scenario::floor_plan::is_plan;
@@ -81,20 +81,22 @@ impl Example {
     }
 }
 
-/// The document of the first of some files, and the notes on it.
+/// The document of the first of some files, which may name the others, and the notes on it.
 fn read(files: &[(&Path, &[u8])]) -> Result<(Value, Vec<String>), Refusal> {
     let folder = tempfile::tempdir().map_err(Refusal::failed)?;
     let mut paths = Vec::new();
     for (name, content) in files {
-        let path = folder.path().join(name.file_name().unwrap_or_default());
-        std::fs::write(&path, content).map_err(Refusal::failed)?;
+        let path = folder.path().join(name);
+        let written = std::fs::create_dir_all(path.parent().unwrap_or(folder.path()))
+            .and_then(|()| std::fs::write(&path, content));
+        written.map_err(Refusal::failed)?;
         paths.push(path);
     }
     let place = format!("{}/", folder.path().display());
     let plain = |text: String| match text.replace(&place, "") {
-        text if text.contains("cannot be read: No such file") => format!(
-            "{text}: it is another file; `sandbox convert` writes a scenario that needs no other"
-        ),
+        text if text.contains("cannot be read: No such file") => {
+            format!("{text}: it is another file; open it together with the scenario")
+        }
         text => text,
     };
     let first = paths.swap_remove(0);
@@ -123,20 +125,62 @@ pub fn whole(source: &Source) -> Result<(Value, Vec<String>), Refusal> {
     Ok((scenario.document, scenario.notes))
 }
 
-/// The document of a file that a page has opened.
+/// The document of the files that a page has opened: a floor plan, or a scenario with the files that it names.
 ///
 /// # Errors
-/// It cannot be read.
-pub fn opened(name: &str, content: &[u8]) -> Result<Value, Refusal> {
-    let path = Path::new(name);
-    let Some(stem) = path.file_stem() else {
+/// It cannot be read, or one of the files does not belong to it.
+pub fn opened(files: &[(String, &[u8])]) -> Result<Value, Refusal> {
+    let named = |(name, content): &(String, &[u8])| -> Result<(PathBuf, Vec<u8>), Refusal> {
+        let last = Path::new(name).file_name();
+        let name = last.ok_or_else(|| Refusal::wrong("name: give the name of the file"))?;
+        Ok((name.into(), content.to_vec()))
+    };
+    let mut files: Vec<(PathBuf, Vec<u8>)> = files.iter().map(named).collect::<Result<_, _>>()?;
+    if files.len() > 1 {
+        files.sort_by_key(|(path, _)| is_plan(path));
+        place_named(&mut files)?;
+    }
+    let Some(stem) = files.first().and_then(|(path, _)| path.file_stem()) else {
         return Err(Refusal::wrong("name: give the name of the file"));
     };
-    let (mut document, notes) = read(&[(path, content)])?;
+    let parts: Vec<(&Path, &[u8])> = files
+        .iter()
+        .map(|(path, bytes)| (&**path, &**bytes))
+        .collect();
+    let (mut document, notes) = read(&parts)?;
     if document.get("name").is_none() {
         document["name"] = stem.to_string_lossy().into();
     }
     Ok(json!({"document": document, "notes": notes}))
+}
+
+/// Gives the files after the first, a scenario, the paths by which it names them.
+fn place_named(files: &mut [(PathBuf, Vec<u8>)]) -> Result<(), Refusal> {
+    let [(scenario, text), others @ ..] = files else {
+        return Ok(());
+    };
+    let document = serde_json::from_slice(text).unwrap_or_default();
+    let inner: Vec<PathBuf> = files_named_in(&document)
+        .into_iter()
+        .map(|(_, file)| PathBuf::from(file))
+        .filter(|file| {
+            file.components()
+                .all(|part| matches!(part, Component::Normal(_)))
+        })
+        .collect();
+    for (path, _) in others {
+        let found = inner
+            .iter()
+            .find(|file| file.file_name() == path.file_name());
+        *path = found.cloned().ok_or_else(|| {
+            Refusal::wrong(format!(
+                "{} names no file {}; open one plan, or one scenario with the files that it names",
+                scenario.display(),
+                path.display()
+            ))
+        })?;
+    }
+    Ok(())
 }
 
 /// A scenario from a document that needs no other file, if its run fits into `memory` bytes.
@@ -171,31 +215,8 @@ pub fn check(document: &Value, memory: Option<u64>) -> Value {
 
 /// Pages bring all that they need: files of this machine are not theirs to read.
 fn names_no_file(document: &Value) -> Result<(), Refusal> {
-    const PLANS: [&str; 2] = ["walkable_area", "obstacles"];
-    let in_list = |list: &'static str, keys: &'static [&'static str]| {
-        let count = document[list].as_array().map_or(0, Vec::len);
-        let paths = move |k| keys.iter().map(move |key| (list, Some(k), *key));
-        (0..count).flat_map(paths)
-    };
-    let at_top = ["walkable_area", "obstacles", "levels"].map(|key| ("", None, key));
-    let mut all = at_top
-        .into_iter()
-        .chain([("from", None, "trajectory")])
-        .chain(in_list("levels", &PLANS))
-        .chain(in_list("events", &["acceleration"]));
-    let named = all.find(|&(list, k, key)| {
-        let owner = match (list, k) {
-            ("", _) => document,
-            (_, Some(k)) => &document[list][k],
-            (_, None) => &document[list],
-        };
-        owner[key].is_string()
-    });
-    let path = match named {
-        None => return Ok(()),
-        Some(("", _, key)) => key.to_owned(),
-        Some((list, None, key)) => format!("{list}.{key}"),
-        Some((list, Some(k), key)) => format!("{list}[{k}].{key}"),
+    let Some((path, _)) = files_named_in(document).into_iter().next() else {
+        return Ok(());
     };
     let reason = "a drawing has no other files; open the file itself";
     Err(Refusal {
@@ -204,6 +225,27 @@ fn names_no_file(document: &Value) -> Result<(), Refusal> {
         path,
         reason: reason.to_owned(),
     })
+}
+
+/// The files that a scenario names, each after the place where it does.
+fn files_named_in(document: &Value) -> Vec<(String, &str)> {
+    const OF_ALL: [&str; 4] = ["walkable_area", "obstacles", "levels", "from.trajectory"];
+    const OF_ELEMENTS: [(&str, &str); 3] = [
+        ("levels", "walkable_area"),
+        ("levels", "obstacles"),
+        ("events", "acceleration"),
+    ];
+    let of_elements = OF_ELEMENTS.into_iter().flat_map(|(list, key)| {
+        let count = document[list].as_array().map_or(0, Vec::len);
+        (0..count).map(move |k| format!("{list}[{k}].{key}"))
+    });
+    let paths = OF_ALL.into_iter().map(str::to_owned).chain(of_elements);
+    let file = |path: String| {
+        let pointer = path.replace(['.', '['], "/").replace(']', "");
+        let file = document.pointer(&format!("/{pointer}"))?.as_str()?;
+        Some((path, file))
+    };
+    paths.filter_map(file).collect()
 }
 
 /// The schema of scenario files.

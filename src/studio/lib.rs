@@ -10,6 +10,8 @@
 
 mod answer;
 
+mod beside;
+
 mod feed;
 
 mod snapshots;
@@ -25,6 +27,8 @@ mod controls;
 mod play;
 
 mod drawing;
+
+mod drawings;
 
 mod saved;
 

@@ -5,6 +5,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 use output::page::Live;
+use output::recording::Address;
 use scenario::Scenario;
 use serde_json::Value;
 
@@ -33,13 +34,17 @@ pub struct Play {
 }
 
 impl Play {
-    /// Begins a run of a scenario, stopped in its first frame.
+    /// Begins a run of a scenario, stopped in its first frame; `viewer` shows it, too.
     ///
     /// # Errors
     /// An agent cannot enter, or there is no thread.
-    pub fn begin(scenario: Scenario, document: Value) -> Result<Self, Refusal> {
+    pub fn begin(
+        scenario: Scenario,
+        document: Value,
+        viewer: Option<Address>,
+    ) -> Result<Self, Refusal> {
         let feed = Arc::new(Feed::default());
-        let player = rayon::scope(|_| Player::new(scenario, feed.clone()))?;
+        let player = rayon::scope(|_| Player::new(scenario, feed.clone(), viewer))?;
         Self::of(player, feed, Arc::new(document))
     }
 

@@ -11,13 +11,14 @@ use output::drawing::{Drawing, Drawn};
 use output::events::Events;
 use output::page::{Live, Moment, PageOptions};
 use output::picture::{Crowd, Picture};
-use output::recording::DebugAgents;
+use output::recording::{Address, DebugAgents};
 use runs::drive::Run;
 use runs::notes;
 use scenario::Scenario;
 use serde_json::{Value, json};
 
 use crate::answer::Refusal;
+use crate::beside::Beside;
 use crate::doors::Doors;
 use crate::feed::Feed;
 use crate::pace::Pace;
@@ -39,6 +40,9 @@ pub struct Player {
     doors: Doors,
     snapshots: Snapshots,
     feed: Arc<Feed>,
+    beside: Beside,
+    /// The time that the latest frame took, milliseconds.
+    ms_per_frame: f64,
     /// The person whose forces pages show.
     followed: Option<u32>,
     /// The frame in which the scenario ended: who plays on then goes beyond it.
@@ -54,16 +58,25 @@ pub struct Player {
 }
 
 impl Player {
-    /// A run of a scenario in its first frame, its page, and where it leaves its frames.
+    /// A run of a scenario in its first frame, which leaves its frames in `feed`, and shows them in `viewer`, too.
     ///
     /// # Errors
     /// An agent cannot enter, or a number is not finite.
-    pub fn new(scenario: Scenario, feed: Arc<Feed>) -> Result<Self, Refusal> {
+    pub fn new(
+        scenario: Scenario,
+        feed: Arc<Feed>,
+        viewer: Option<Address>,
+    ) -> Result<Self, Refusal> {
         let run = Run::new(scenario).map_err(Refusal::impossible)?;
-        Self::of(run, None, feed)
+        Self::of(run, None, feed, viewer)
     }
 
-    fn of(mut run: Run, events: Option<Events>, feed: Arc<Feed>) -> Result<Self, Refusal> {
+    fn of(
+        mut run: Run,
+        events: Option<Events>,
+        feed: Arc<Feed>,
+        viewer: Option<Address>,
+    ) -> Result<Self, Refusal> {
         // Densities depend on those before, so every frame needs them.
         run.simulation.request_density_until(u64::MAX);
         run.simulation.evaluate().map_err(Refusal::impossible)?;
@@ -77,6 +90,8 @@ impl Player {
             doors: Doors::default(),
             snapshots: Snapshots::default(),
             feed,
+            beside: Beside::new(viewer),
+            ms_per_frame: 0.0,
             followed: None,
             ended: None,
             observed_from: time,
@@ -87,7 +102,6 @@ impl Player {
             warnings: Vec::new(),
         };
         player.observe();
-        player.warn();
         player.show(false);
         player.tell();
         Ok(player)
@@ -159,6 +173,7 @@ impl Player {
 
     /// Computes the next frame; whether there is one.
     fn step(&mut self) -> bool {
+        let start = Instant::now();
         let simulation = &mut self.run.simulation;
         let moved = simulation.integrate().map(drop);
         if let Err(fault) = moved.and_then(|()| simulation.evaluate().map(drop)) {
@@ -167,6 +182,7 @@ impl Player {
             self.stop();
             return false;
         }
+        self.ms_per_frame = 1000.0 * start.elapsed().as_secs_f64();
         self.observe();
         if self.run.end.is_some() && self.ended.is_none() {
             self.ended = Some(self.run.simulation.frame().clock.frame());
@@ -182,8 +198,10 @@ impl Player {
     fn observe(&mut self) {
         self.run.measure();
         self.doors.observe(&self.run.simulation);
-        if let Err(problem) = self.snapshots.add(&self.run, &self.events) {
-            self.fault = Some(problem);
+        match self.snapshots.add(&self.run, &self.events) {
+            Ok(true) => self.warn(),
+            Ok(false) => {}
+            Err(problem) => self.fault = Some(problem),
         }
     }
 
@@ -197,6 +215,10 @@ impl Player {
         self.warnings = own.chain(notes::of(&self.run)).collect();
     }
 
+    fn warnings(&self) -> Vec<&String> {
+        self.warnings.iter().chain(&self.beside.warning).collect()
+    }
+
     /// Leaves the current frame for pages.
     fn show(&mut self, is_back: bool) {
         let simulation = &self.run.simulation;
@@ -205,6 +227,7 @@ impl Player {
         let debug = DebugAgents::Ids(self.followed.into_iter().collect());
         let moment = Moment::of(simulation, &crowd, (self.events.evacuated, new), &debug);
         self.feed.add(self.live.coded(&moment), is_back);
+        self.beside.show(&self.run, is_back, self.ms_per_frame);
         self.shown = Instant::now();
     }
 
@@ -224,7 +247,7 @@ impl Player {
             "frame": frame.clock.frame(), "end": end.then(|| self.run.reason()), "fault": self.fault,
             "people": frame.agents.count_present(), "behind": self.pace.playing && self.pace.behind,
             "rate": self.pace.rate.filter(|_| self.pace.playing), "doors": doors,
-            "done": simulation.interventions().len(), "warnings": self.warnings, "seeks": self.target.is_some(),
+            "done": simulation.interventions().len(), "warnings": self.warnings(), "seeks": self.target.is_some(),
             "followed": self.followed,
         })
     }
@@ -395,7 +418,7 @@ impl Player {
     /// A measurement cannot be copied, or the run is on its way to another time.
     pub fn fork(&self, feed: Arc<Feed>) -> Result<Self, Refusal> {
         let run = self.shown()?.fork().map_err(Refusal::failed)?;
-        Self::of(run, Some(self.events.clone()), feed)
+        Self::of(run, Some(self.events.clone()), feed, self.beside.viewer())
     }
 
     /// The forces on a person, as `sandbox inspect --json` has them.

@@ -4,10 +4,12 @@ use std::collections::HashMap;
 use std::ffi::OsString;
 use std::time::Duration;
 
+use output::recording::Address;
 use serde_json::{Value, json};
 
 use crate::answer::{Answer, Refusal};
 use crate::drawing;
+use crate::drawings::Drawings;
 use crate::feed::Known;
 use crate::page;
 use crate::play::Play;
@@ -38,8 +40,12 @@ pub struct Answers {
     pub given: Option<Value>,
     /// Main memory for a run, bytes; `None`: no limit.
     pub memory: Option<u64>,
+    /// The Rerun viewer that shows the runs, too.
+    pub viewer: Option<Address>,
     /// The program, and its first arguments.
     pub program: Vec<OsString>,
+    /// The drawings of pages.
+    pub drawings: Drawings,
     /// All runs.
     pub plays: Plays,
 }
@@ -58,7 +64,8 @@ impl Answers {
             (false, [""]) => Ok(Answer::of("text/html; charset=utf-8", page::text())),
             (false, ["schema"]) => Ok(Answer::json(&drawing::schema())),
             (false, ["start"]) => Ok(Answer::json(&json!({
-                "given": self.given, "examples": drawing::examples()?, "runs": self.plays.list(),
+                "given": self.given, "examples": drawing::examples()?, "drawings": self.drawings.list(),
+                "runs": self.plays.list(),
             }))),
             (false, ["example"]) => {
                 let name = query.get("name").map_or("", String::as_str);
@@ -66,15 +73,31 @@ impl Answers {
                     &json!({"document": drawing::example(name)?, "notes": []}),
                 ))
             }
-            (true, ["check"]) => Ok(Answer::json(&drawing::check(&request.json()?, self.memory))),
+            (true, ["check"]) => {
+                let document = request.json()?;
+                let found = drawing::check(&document, self.memory);
+                if let Some(key) = query.get("drawing") {
+                    self.drawings.keep(key, document)?;
+                }
+                Ok(Answer::json(&found))
+            }
+            (false, ["drawings", key]) => Ok(Answer::json(
+                &json!({"document": self.drawings.get(key)?, "notes": []}),
+            )),
+            (true, ["drawings", key, "forget"]) => {
+                self.drawings.forget(key)?;
+                Ok(Answer::json(&json!({})))
+            }
             (true, ["import"]) => {
-                let name = query.get("name").map_or("", String::as_str);
-                Ok(Answer::json(&drawing::opened(name, request.body)?))
+                let files = files(&query, request.body)?;
+                Ok(Answer::json(&drawing::opened(&files)?))
             }
             (true, ["runs"]) => {
                 let document = request.json()?;
                 let scenario = drawing::scenario(&document, self.memory)?;
-                let number = self.plays.add(|| Play::begin(scenario, document))?;
+                let number = self
+                    .plays
+                    .add(|| Play::begin(scenario, document, self.viewer.clone()))?;
                 Ok(Answer::json(&json!({"run": number})))
             }
             (false, ["runs", number]) => self.described(number),
@@ -240,6 +263,33 @@ fn number_of(query: &HashMap<String, String>, key: &str) -> Result<u64, Refusal>
         key,
         text.ok_or_else(|| Refusal::wrong(format!("{key} is missing")))?,
     )
+}
+
+/// The files of a request, by name: one, or several, one after the other, whose names and lengths are a JSON list.
+fn files<'a>(
+    query: &HashMap<String, String>,
+    body: &'a [u8],
+) -> Result<Vec<(String, &'a [u8])>, Refusal> {
+    let Some(list) = query.get("files") else {
+        let name = query.get("name").cloned().unwrap_or_default();
+        return Ok(vec![(name, body)]);
+    };
+    let wrong = || {
+        let message = "files: give a list of [name, bytes], as long together as the request";
+        Refusal::wrong(message)
+    };
+    let list: Vec<(String, usize)> = serde_json::from_str(list).map_err(|_| wrong())?;
+    let mut rest = body;
+    let mut files = Vec::new();
+    for (name, length) in list {
+        let (content, after) = rest.split_at_checked(length).ok_or_else(wrong)?;
+        files.push((name, content));
+        rest = after;
+    }
+    match rest.is_empty() && !files.is_empty() {
+        true => Ok(files),
+        false => Err(wrong()),
+    }
 }
 
 /// The values of a query, decoded.

@@ -6,11 +6,13 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 use std::time::Duration;
 
+use output::recording::{RecordingError, Viewer};
 use serde_json::Value;
 use tiny_http::{Header, Method, Response};
 
 use crate::answer::{Answer, Refusal};
 use crate::drawing;
+use crate::drawings::Drawings;
 use crate::plays::Plays;
 use crate::requests::{Answers, Request};
 use runs::case::Source;
@@ -38,6 +40,8 @@ pub struct Studio {
     pub port: Option<u16>,
     /// Main memory for a run, bytes; `None`: no limit.
     pub memory: Option<u64>,
+    /// A Rerun viewer that shows the runs, too.
+    pub viewer: Option<Viewer>,
     /// The program, and its first arguments: it makes recordings, pages, reports and pictures.
     pub program: Vec<OsString>,
 }
@@ -48,6 +52,9 @@ pub enum ServerError {
     /// The scenario cannot be opened.
     #[error("{0}")]
     Scenario(String),
+    /// No viewer answers, or none can be started.
+    #[error(transparent)]
+    Viewer(#[from] RecordingError),
     /// The port is taken, or forbidden.
     #[error("port {port}: {cause}; give another one with --port")]
     Port {
@@ -69,15 +76,18 @@ impl Server {
     /// Starts the server.
     ///
     /// # Errors
-    /// The scenario is wrong, or the port is taken.
+    /// The scenario is wrong, no viewer answers, or the port is taken.
     pub fn start(studio: Studio) -> Result<Self, ServerError> {
-        let given = studio.scenario.as_ref().map(given);
+        let given = studio.scenario.as_ref().map(given).transpose()?;
+        let viewer = studio.viewer.as_ref().map(Viewer::reached);
         let port = studio.port.unwrap_or(0);
         let failed = |cause: String| ServerError::Port { port, cause };
         let answers = Answers {
-            given: given.transpose()?,
+            given,
             memory: studio.memory,
+            viewer: viewer.transpose()?,
             program: studio.program,
+            drawings: Drawings::default(),
             plays: Plays::default(),
         };
         let opened = tiny_http::Server::http((Ipv4Addr::LOCALHOST, port));

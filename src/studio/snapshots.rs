@@ -23,16 +23,16 @@ pub struct Snapshot {
 pub struct Snapshots(Vec<Snapshot>);
 
 impl Snapshots {
-    /// Adds a snapshot of the current frame if one is due.
+    /// Adds a snapshot of the current frame if one is due; whether it was.
     ///
     /// # Errors
     /// The run cannot be copied.
-    pub fn add(&mut self, run: &Run, events: &Events) -> Result<(), String> {
+    pub fn add(&mut self, run: &Run, events: &Events) -> Result<bool, String> {
         let clock = run.simulation.frame().clock;
         let (frame, time) = (clock.frame(), clock.time());
         let last = self.0.last().map(|one| clock.time_at(one.frame));
         if last.is_some_and(|last| time < last + EVERY) {
-            return Ok(());
+            return Ok(false);
         }
         self.0.push(Snapshot {
             frame,
@@ -42,7 +42,7 @@ impl Snapshots {
         if self.0.len() > MOST {
             self.thin(frame);
         }
-        Ok(())
+        Ok(true)
     }
 
     /// Removes the snapshot whose neighbors are nearest to each other, compared with its age.

@@ -184,7 +184,7 @@ impl Recording {
         run: &mut Run,
     ) -> Result<Self, Failure> {
         run.simulation.request_density_until(u64::MAX);
-        let view = recording_options(&run.scenario, debug, record.record_from);
+        let view = RecordingOptions::of(&run.scenario, debug, record.record_from);
         Ok(Self {
             recorder: Recorder::create(to, &run.simulation, &view)?,
             due: RecordedFrames::new(record, &run.simulation),
@@ -233,19 +233,23 @@ impl Observer<Failure> for Recording {
     }
 }
 
+/// The viewer of `--connect` or `--spawn`, if one is requested.
+pub fn viewer(connect: Option<&str>, spawn: bool) -> Result<Option<Viewer>, Failure> {
+    let Some(text) = connect else {
+        return Ok(spawn.then_some(Viewer::Spawned));
+    };
+    let address = text.parse().map(Viewer::At);
+    address
+        .map(Some)
+        .map_err(|error| Failure::Input(format!("--connect {text}: {error}")))
+}
+
 /// The destination of the recording, if one is requested.
 fn destination(
     record: &RecordOptions,
     interrupt: &Interrupt,
 ) -> Result<Option<Destination>, Failure> {
-    let viewer = match &record.connect {
-        Some(text) => Some(
-            text.parse()
-                .map(Viewer::At)
-                .map_err(|error| Failure::Input(format!("--connect {text}: {error}")))?,
-        ),
-        None => record.spawn.then_some(Viewer::Spawned),
-    };
+    let viewer = viewer(record.connect.as_deref(), record.spawn)?;
     let [file, _] = kinds(record)?;
     let file = file.map(Path::to_owned);
     let asked = file.is_some() || viewer.is_some();
@@ -269,48 +273,11 @@ pub fn save_moment(
     let now = simulation.frame().clock.time();
     let run = Identity::of_run(scenario);
     let id = Identity::of("inspect", format_args!("{run} {now} {ids:?}"));
-    let mut options = recording_options(scenario, DebugAgents::Ids(ids), now);
+    let mut options = RecordingOptions::of(scenario, DebugAgents::Ids(ids), now);
     options.id = id.to_string(); // a viewer would merge it with a recording of the run
     options.opens_at = Some(now);
     options.ends_at = now;
     Ok(record_moment(path, simulation, &options)?)
-}
-
-/// The options of a recording that begins at the time `from`.
-pub fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> RecordingOptions {
-    let (view, recorded) = (scenario.view, from..scenario.duration_secs);
-    let drawn = Drawn::of(scenario);
-    let measured = drawn.observed.into_iter();
-    RecordingOptions {
-        id: Identity::of_run(scenario).to_string(),
-        application: format!("sandbox {}", scenario.name),
-        title: title(scenario),
-        description: scenario.description.clone(),
-        document: format!("## Scenario\n```json\n{}\n```\n", scenario.to_text()),
-        view: drawn.view,
-        density_range: view.density_range,
-        speed_range: view.speed_range,
-        opens_at: view.opens_at_secs.filter(|at| recorded.contains(at)),
-        begins_at: from,
-        ends_at: scenario.duration_secs,
-        debug,
-        body_mass: scenario.mass_on_walls(),
-        measured: measured
-            .map(|(name, place)| (name, place.outline()))
-            .collect(),
-        labels: drawn.labels,
-        entering: scenario.entering,
-    }
-}
-
-/// The name of a recording: the scenario with its profile and seed, and what differs from its file.
-fn title(scenario: &Scenario) -> String {
-    let own = format!("{} {}", scenario.name, scenario.profile_name);
-    let changes = scenario.changes.iter();
-    let others =
-        changes.filter(|change| !change.starts_with("profile") && !change.starts_with("seed "));
-    let changes: String = others.map(|change| format!(", {change}")).collect();
-    format!("{own} seed {}{changes}", scenario.seed)
 }
 
 fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgents, Failure> {

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use super::{RecordedFrames, kinds, recording_options};
+use super::{RecordedFrames, kinds};
 use crate::cli::arguments::RecordOptions;
 use crate::cli::failure::Failure;
 use crate::cli::results as report;
@@ -14,7 +14,7 @@ use output::events::Events;
 use output::html::escape;
 use output::page::{EmbeddedViewer, Moment, Page, PageOptions};
 use output::picture::{Crowd, Picture};
-use output::recording::DebugAgents;
+use output::recording::{DebugAgents, RecordingOptions};
 use output::results::{reproducible, results, section};
 use runs::drive::{End, Observer, Run};
 use scenario::Scenario;
@@ -106,7 +106,7 @@ fn create(
 
 /// The options of a page that begins at the time `from`.
 fn options(scenario: &Scenario, debug: &DebugAgents, from: f64) -> PageOptions {
-    let recording = recording_options(scenario, debug.clone(), from);
+    let recording = RecordingOptions::of(scenario, debug.clone(), from);
     PageOptions {
         title: recording.title,
         description: recording.description,

@@ -5,7 +5,9 @@ class Drawing {
   static MOST_STEPS = 200;
   /** The time after a change until the program checks the drawing, milliseconds. */
   static CHECKING = 300;
-  static STORED = "studio.document";
+  static STORED = "studio.drawing";
+  /** The most bytes that a page which is closed can still send. */
+  static LAST = 60_000;
   /** Changes of the same thing within this time are one step of the history, milliseconds. */
   static JOINING = 1000;
   /** People of the default size that surely find room, per square meter. */
@@ -34,16 +36,21 @@ class Drawing {
     on("draw-redo", () => this.redo());
     on("draw-play", () => this.play());
     on("draw-problem", () => this.showProblem());
+    addEventListener("pagehide", () => this.leave());
     document.getElementById("draw-level").addEventListener("change", event => this.chooseLevel(event.target.value));
     this.draft.choose("select", true);
   }
 
   /* The document. */
 
-  /** Draws another document; undoing brings the one before back. */
-  open(document) {
+  /**
+   * Draws another document; undoing brings the one before back. The program keeps it by `key` from its first change on,
+   * or at once if it `isChanged`.
+   */
+  open(document, { key = crypto.randomUUID(), isChanged = false } = {}) {
+    this.leave();
     if (this.shapes.length) this.keep(JSON.stringify(this.document));
-    this.document = document;
+    Object.assign(this, { document, key, isChanged });
     this.token = null;
     this.level = document.levels?.[0]?.name ?? null;
     this.select(null);
@@ -58,7 +65,7 @@ class Drawing {
     const before = JSON.stringify(this.document), now = performance.now();
     does(this.document);
     const isJoined = token !== null && token === this.token && now - this.changed < Drawing.JOINING;
-    [this.token, this.changed] = [token, now];
+    [this.token, this.changed, this.isChanged] = [token, now, true];
     if (!isJoined) this.keep(before);
     this.sheet.isWhole = false;
     this.studio.say("");
@@ -84,7 +91,7 @@ class Drawing {
     if (!from.length) return;
     to.push(JSON.stringify(this.document));
     this.document = JSON.parse(from.pop());
-    this.token = null;
+    [this.token, this.isChanged] = [null, true];
     this.refresh();
   }
 
@@ -115,11 +122,27 @@ class Drawing {
 
   /** Keeps the document for a reload of the page. */
   store() {
+    const { document, key, isChanged } = this;
     try {
-      sessionStorage.setItem(Drawing.STORED, JSON.stringify(this.document));
+      sessionStorage.setItem(Drawing.STORED, JSON.stringify({ document, key, isChanged }));
     } catch {
-      this.say("The drawing is too large to survive a reload of the page: save it.");
+      // The program keeps it, too.
     }
+  }
+
+  /** Opens what was drawn in this tab before its page was loaded again; whether there is something. */
+  restoreStored() {
+    let stored = null;
+    try {
+      stored = JSON.parse(sessionStorage.getItem(Drawing.STORED));
+    } catch {
+      return false;
+    }
+    if (!stored) return false;
+    // A copy of a tab is another drawing.
+    const isReload = performance.getEntriesByType("navigation")[0]?.type === "reload";
+    this.open(stored.document, { isChanged: stored.isChanged, ...isReload ? { key: stored.key } : {} });
+    return true;
   }
 
   /* Elements. */
@@ -275,13 +298,26 @@ class Drawing {
     const { version } = this;
     let found;
     try {
-      found = await ask("check", this.document);
+      found = await ask(this.checks, this.document);
     } catch (error) {
       found = { problem: { path: error.path ?? "", message: this.studio.words(error) }, notes: [] };
     }
     if (version !== this.version) return;
+    this.checked = version;
     this.problem = found.problem;
     this.showFound(found);
+  }
+
+  /** The request that checks the drawing; once it was changed, the program keeps it. */
+  get checks() {
+    return this.isChanged ? `check?drawing=${this.key}` : "check";
+  }
+
+  /** Sends the last change, when the page is closed or another drawing is opened before it was checked. */
+  leave() {
+    const body = JSON.stringify(this.document);
+    if (!this.isChanged || this.checked === this.version || body.length > Drawing.LAST) return;
+    answerOf(this.checks, { method: "POST", body, keepalive: true }).catch(() => null);
   }
 
   showFound({ problem, notes, people }) {

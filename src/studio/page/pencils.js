@@ -25,6 +25,10 @@ const PENCILS = {
     key: "d", title: "Door", form: "line", hint: "Drag along a wall, which then opens, or across an opening.",
     make: (line, { document }) => ["doors", { name: newName(document, "door"), line }],
   },
+  barrier: {
+    key: "b", title: "Barrier", form: "line", hint: "Drag from wall to wall: nobody passes until it is opened in Play.",
+    make: (line, { document }) => ["doors", { name: newName(document, "barrier"), line, closed_secs: [[0, 1e7]] }],
+  },
   exit: {
     key: "e", title: "Exit", form: "line", hint: "Drag along the edge of the floor, where people leave.",
     make: (line, { document }) => ["exits", { name: newName(document, "exit"), line }],

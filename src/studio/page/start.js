@@ -21,8 +21,8 @@ class Studio {
     on("continue", () => this.open("draw"));
     for (const id of ["start-import", "open-file"]) $(id).addEventListener("click", () => $("file").click());
     $("file").addEventListener("change", event => {
-      const [file] = event.target.files;
-      if (file) this.attempt(() => this.import(file));
+      const files = [...event.target.files];
+      if (files.length) this.attempt(() => this.import(files));
       event.target.value = "";
     });
     $("name").addEventListener("change", event => this.rename(event.target.value.trim()));
@@ -46,11 +46,7 @@ class Studio {
   /** Opens what the address or the command line asks for. */
   async begin() {
     document.body.dataset.mode = this.mode;
-    const stored = this.stored();
-    if (stored) {
-      this.drawing.open(stored);
-      this.hasDrawing = true;
-    }
+    this.hasDrawing = this.drawing.restoreStored();
     const { given } = await ask("start");
     if (given && !location.hash) {
       this.take(given);
@@ -58,14 +54,6 @@ class Studio {
       this.say("Press ▶ or the space bar to play.");
     } else await this.follow();
     document.body.dataset.state = "ready";
-  }
-
-  stored() {
-    try {
-      return JSON.parse(sessionStorage.getItem(Drawing.STORED));
-    } catch {
-      return null;
-    }
   }
 
   /** Goes where the hash of the address says. */
@@ -117,7 +105,7 @@ class Studio {
   /* The start page. */
 
   async showStart() {
-    const { examples, runs } = await ask("start"), $ = id => document.getElementById(id);
+    const { examples, drawings, runs } = await ask("start"), $ = id => document.getElementById(id);
     const cards = examples.filter(({ name }) => name !== Studio.EMPTY).map(({ name, title, description }) => {
       const card = element("button", { className: "card", id: `example-${name}` },
         element("b", { textContent: title }), element("span", { textContent: description }));
@@ -127,8 +115,38 @@ class Studio {
     if (!$("examples").childElementCount) $("examples").append(...cards);
     $("continue").hidden = !this.hasDrawing;
     $("continued").textContent = this.document.name ?? "without a name";
+    const others = drawings.filter(({ key }) => key !== this.drawing.key);
+    $("kept-drawings").hidden = !others.length;
+    $("drawings").replaceChildren(...others.map(kept => this.drawingItem(kept)));
     $("open-runs").hidden = !runs.length;
     $("runs").replaceChildren(...runs.map(run => this.runItem(run)));
+  }
+
+  /** A drawing of a tab that was closed, or of another one. */
+  drawingItem({ key, name, age_secs: age }) {
+    const link = element("button", { className: "link", textContent: name || "without a name" });
+    link.addEventListener("click", () => this.attempt(() => this.continueDrawing(key)));
+    const ago = age < 60 ? "less than a minute" : `${Math.round(age / 60)} min`;
+    const forget = element("button", { textContent: "Forget", ariaLabel: `forget the drawing ${name ?? ""}` });
+    forget.addEventListener("click", () => this.attempt(() => this.forget(key)));
+    const item = element("li", {}, link, element("span", { className: "soft", textContent: ` changed ${ago} ago` }), forget);
+    item.dataset.drawing = key;
+    return item;
+  }
+
+  async forget(key) {
+    await ask(`drawings/${key}/forget`, {});
+    await this.showStart();
+  }
+
+  /** Goes on with a drawing of another tab, under a key of its own: that tab may still be open. */
+  async continueDrawing(key) {
+    const { document } = await ask(`drawings/${key}`);
+    this.take(document, { isChanged: true });
+    this.open("draw");
+    this.drawing.sheet.fit();
+    await this.drawing.check();
+    await ask(`drawings/${key}/forget`, {});
   }
 
   runItem({ id, name, state }) {
@@ -167,9 +185,9 @@ class Studio {
   /* Documents. */
 
   /** Takes a document as the drawing, without showing it. */
-  take(document) {
+  take(document, kept = {}) {
     this.hasDrawing = true;
-    this.drawing.open(structuredClone(document));
+    this.drawing.open(structuredClone(document), kept);
   }
 
   /** Draws a document. */
@@ -225,15 +243,16 @@ class Studio {
 
   /* Files. */
 
-  /** Opens a scenario or a floor plan. */
-  async import(file) {
-    this.say(`${file.name} is read …`);
-    const body = await file.arrayBuffer(), headers = { "Content-Type": "application/octet-stream" };
-    const answer = await answerOf(`import?name=${encodeURIComponent(file.name)}`, { method: "POST", headers, body });
+  /** Opens a floor plan, or a scenario with the files that it names. */
+  async import(files) {
+    const names = files.map(({ name }) => name).join(", "), headers = { "Content-Type": "application/octet-stream" };
+    this.say(`${names}: reading …`);
+    const list = encodeURIComponent(JSON.stringify(files.map(({ name, size }) => [name, size])));
+    const answer = await answerOf(`import?files=${list}`, { method: "POST", headers, body: new Blob(files) });
     const { document, notes } = await answer.json();
     this.drawing.underlay.remove();
     this.edit(document);
-    this.say(`${[`${file.name} is open`, ...notes].join(". ")}.`);
+    this.say(`${[`Opened ${names}`, ...notes].join(". ")}.`);
   }
 
   /** Files that are dropped anywhere are opened. */
@@ -249,10 +268,10 @@ class Studio {
     addEventListener("drop", event => {
       event.preventDefault();
       body.classList.remove("drops");
-      const [file] = event.dataTransfer.files;
+      const files = [...event.dataTransfer.files], [file] = files;
       if (!file) return;
       if (/^image\//.test(file.type) && this.mode === "draw") this.drawing.underlay.open(file);
-      else this.attempt(() => this.import(file));
+      else this.attempt(() => this.import(files));
     });
   }
 

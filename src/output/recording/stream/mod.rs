@@ -47,6 +47,15 @@ impl From<&Path> for Destination {
     }
 }
 
+impl From<Viewer> for Destination {
+    fn from(viewer: Viewer) -> Self {
+        Self {
+            viewer: Some(viewer),
+            ..Self::default()
+        }
+    }
+}
+
 /// The application id of a recording: the viewer keeps one layout per application.
 pub fn application(options: &RecordingOptions) -> Result<ApplicationId, Cause> {
     Ok(ApplicationId::try_new(options.application.as_str())?)

@@ -61,22 +61,29 @@ impl fmt::Display for Address {
     }
 }
 
+impl Address {
+    /// No viewer answers here.
+    fn silent(&self, reason: String) -> RecordingError {
+        RecordingError::NoViewer {
+            address: self.to_string(),
+            reason,
+        }
+    }
+}
+
 impl Viewer {
-    /// Connects to the viewer, once it answers.
-    pub(super) fn connect(
-        &self,
-        interrupted: &Arc<AtomicBool>,
-    ) -> Result<ViewerSink, RecordingError> {
+    /// The address of the viewer, which answers; it is started if it is to be.
+    ///
+    /// # Errors
+    /// No viewer answers, or none can be started.
+    pub fn reached(&self) -> Result<Address, RecordingError> {
         let address = match self {
             Self::Spawned => spawn()?,
             Self::At(address) => address.clone(),
         };
         let origin = &address.0.origin;
         let (host, port) = (origin.format_host(), origin.port);
-        let no_viewer = |reason: String| RecordingError::NoViewer {
-            address: address.to_string(),
-            reason,
-        };
+        let no_viewer = |reason: String| address.silent(reason);
         let mut places = (host.trim_matches(['[', ']']), port)
             .to_socket_addrs()
             .map_err(|error| no_viewer(error.to_string()))?;
@@ -85,11 +92,20 @@ impl Viewer {
             let answer = TcpStream::connect_timeout(&place, CONNECTING);
             answer.map_err(|error| refusal = error.to_string()).is_ok()
         });
-        if !answers {
-            return Err(no_viewer(refusal));
+        match answers {
+            true => Ok(address),
+            false => Err(no_viewer(refusal)),
         }
+    }
+
+    /// Connects to the viewer, once it answers.
+    pub(super) fn connect(
+        &self,
+        interrupted: &Arc<AtomicBool>,
+    ) -> Result<ViewerSink, RecordingError> {
+        let address = self.reached()?;
         let opened = ViewerSink::open(address.clone(), Arc::clone(interrupted));
-        opened.map_err(|error| no_viewer(error.to_string()))
+        opened.map_err(|error| address.silent(error.to_string()))
     }
 }
 
