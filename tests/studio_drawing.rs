@@ -197,10 +197,16 @@ fn a_scenario_is_opened_with_the_files_that_it_names() {
             .collect();
         let list = json!(list).to_string().replace('"', "%22");
         let path = format!("{}import?files={list}", studio.root);
-        let body: Vec<u8> = files.iter().flat_map(|(_, content)| content.to_vec()).collect();
+        let body: Vec<u8> = files
+            .iter()
+            .flat_map(|(_, content)| content.to_vec())
+            .collect();
         studio.with("POST", &path, &[], &body)
     };
-    let both = [("office.geojson", &plan[..]), ("office.json", &scenario[..])];
+    let both = [
+        ("office.geojson", &plan[..]),
+        ("office.json", &scenario[..]),
+    ];
     let opened = import(&both);
     let text = String::from_utf8_lossy(&opened.content).into_owned();
     assert_eq!(opened.status, 200, "{text}");
@@ -212,17 +218,29 @@ fn a_scenario_is_opened_with_the_files_that_it_names() {
     let opened = import(&[both[0], ("office.json", inner.as_bytes())]);
     assert_eq!(opened.json()["document"], whole["document"]);
     // Alone, twice, with a stranger, and with wrong lengths.
-    let said = |reply: common::studio::Reply, status: u16| {
+    let said = |reply: crate::common::studio::Reply, status: u16| {
         assert_eq!(reply.status, status);
-        reply.json()["error"]["message"].as_str().unwrap().to_owned()
+        reply.json()["error"]["message"]
+            .as_str()
+            .unwrap()
+            .to_owned()
     };
     let alone = said(import(&both[1..]), 422);
-    assert!(alone.contains("office.geojson") && alone.contains("together"), "{alone}");
-    let other = said(import(&[both[1], ("hall.wkt", b"POLYGON ((0 0, 1 0, 1 1, 0 0))")]), 400);
+    assert!(
+        alone.contains("office.geojson") && alone.contains("together"),
+        "{alone}"
+    );
+    let other = said(
+        import(&[both[1], ("hall.wkt", b"POLYGON ((0 0, 1 0, 1 1, 0 0))")]),
+        400,
+    );
     assert!(other.contains("names no file hall.wkt"), "{other}");
     let outside = inner.replace("plans/floor/", "../");
     let outside = said(import(&[both[0], ("office.json", outside.as_bytes())]), 400);
-    assert!(outside.contains("names no file office.geojson"), "{outside}");
+    assert!(
+        outside.contains("names no file office.geojson"),
+        "{outside}"
+    );
     for list in ["[]", "[[%22a.wkt%22,9]]", "[[%22a.wkt%22,1]]", "x"] {
         let path = format!("{}import?files={list}", studio.root);
         let message = said(studio.with("POST", &path, &[], b"POL"), 400);
@@ -246,7 +264,12 @@ fn drawings_are_kept_when_their_tab_is_closed() {
     studio.ask("check?drawing=b-2", &room());
     let list = kept();
     assert_eq!(list[0]["key"], "b-2");
-    assert_eq!(list[1], json!({"key": "a-1", "name": "wrong", "age_secs": list[1]["age_secs"]}));
+    assert_eq!(
+        list[1],
+        json!({
+            "key": "a-1", "name": "wrong", "elements": 4, "age_secs": list[1]["age_secs"],
+        })
+    );
     assert!(list[1]["age_secs"].as_u64().unwrap() < 600);
     let opened = studio.ask("drawings/a-1", &Value::Null);
     assert_eq!(opened["document"], wrong);
@@ -259,7 +282,10 @@ fn drawings_are_kept_when_their_tab_is_closed() {
     assert_eq!(studio.get("drawings/b-2").status, 404);
     assert_eq!(studio.post("drawings/b-2/forget", &json!({})).status, 404);
     for key in ["", &"k".repeat(65)] {
-        assert_eq!(studio.post(&format!("check?drawing={key}"), &room()).status, 400);
+        assert_eq!(
+            studio.post(&format!("check?drawing={key}"), &room()).status,
+            400
+        );
     }
     // No more than twenty.
     for k in 0..20 {

@@ -77,11 +77,16 @@ impl Drawings {
         }
     }
 
-    /// All drawings: key, name, and the seconds since their last change, the latest first.
+    /// All drawings, the latest first: key, name, number of elements, and the seconds since their last change.
     pub fn list(&self) -> Value {
         let one = |kept: &Kept| {
             let age = kept.changed.elapsed().as_secs();
-            json!({"key": kept.key, "name": kept.document["name"], "age_secs": age})
+            let keys = kept.document.as_object().into_iter().flatten();
+            let lists = keys.filter_map(|(_, value)| value.as_array());
+            json!({
+                "key": kept.key, "name": kept.document["name"], "elements": lists.map(Vec::len).sum::<usize>(),
+                "age_secs": age,
+            })
         };
         self.all().iter().map(one).collect()
     }

@@ -16,7 +16,6 @@ use page::PageOfRun;
 
 use engine::clock::Clock;
 use engine::simulation::Simulation;
-use output::drawing::Drawn;
 use output::page::EmbeddedViewer;
 use output::recording::{
     DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer, record_moment,

@@ -122,14 +122,15 @@ class Studio {
     $("runs").replaceChildren(...runs.map(run => this.runItem(run)));
   }
 
-  /** A drawing of a tab that was closed, or of another one. */
-  drawingItem({ key, name, age_secs: age }) {
+  /** A drawing of a tab that was closed, of another one, or one before in this tab. */
+  drawingItem({ key, name, elements, age_secs: age }) {
     const link = element("button", { className: "link", textContent: name || "without a name" });
     link.addEventListener("click", () => this.attempt(() => this.continueDrawing(key)));
     const ago = age < 60 ? "less than a minute" : `${Math.round(age / 60)} min`;
     const forget = element("button", { textContent: "Forget", ariaLabel: `forget the drawing ${name ?? ""}` });
     forget.addEventListener("click", () => this.attempt(() => this.forget(key)));
-    const item = element("li", {}, link, element("span", { className: "soft", textContent: ` changed ${ago} ago` }), forget);
+    const about = `${elements} ${elements === 1 ? "element" : "elements"}, changed ${ago} ago`;
+    const item = element("li", {}, link, element("span", { className: "soft", textContent: about }), forget);
     item.dataset.drawing = key;
     return item;
   }
