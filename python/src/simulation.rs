@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PyDict, PyTuple};
-use sandbox::cli::{json_report, recording_options};
+use sandbox::cli::json_report;
 use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::frame::Frame;
 use sandbox::engine::scene::Action;
 use sandbox::engine::simulation::{Added, Fault};
 use sandbox::engine::stability;
-use sandbox::output::recording::{DebugAgents, Recorder};
+use sandbox::output::recording::{DebugAgents, Recorder, RecordingOptions};
 use sandbox::output::trajectory::{Collected, Columns, frames_between, walkable_area};
 use sandbox::runs::checkpoint::Checkpoint;
 use sandbox::runs::drive::Run;
@@ -313,7 +313,7 @@ impl Native {
         let scenario = &self.run.scenario;
         let ids = debug.unwrap_or_else(|| scenario.debug_agents.clone());
         let now = self.now().clock.time();
-        let options = recording_options(scenario, DebugAgents::Ids(ids), now);
+        let options = RecordingOptions::of(scenario, DebugAgents::Ids(ids), now);
         let recorder = Recorder::create(path.as_path(), &self.run.simulation, &options);
         self.recording = Some((recorder.map_err(error)?, every));
         self.log()

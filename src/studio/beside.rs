@@ -9,7 +9,7 @@ pub struct Beside {
     recorder: Option<Recorder>,
     /// The latest frame of the recording.
     frame: Option<u64>,
-    /// Why the viewer shows the run no more.
+    /// Why the viewer does not show the run.
     pub warning: Option<String>,
 }
 
@@ -24,7 +24,7 @@ impl Beside {
         }
     }
 
-    /// The same viewer, for another run.
+    /// The viewer, for a fork of the run.
     pub fn viewer(&self) -> Option<Address> {
         self.viewer.clone()
     }
@@ -70,7 +70,7 @@ impl Beside {
 
 impl Drop for Beside {
     fn drop(&mut self) {
-        // The page has gone: nobody is told of a viewer that has gone, too.
+        // The run is closed: an error has no reader.
         self.recorder.take().map(Recorder::finish);
     }
 }
