@@ -237,6 +237,69 @@ fn no_way_leads_from_another_room_through_the_wall_behind_an_exit() {
     assert_eq!(after(&alone, &[], 60.0).outcome().arrivals.len(), 10);
 }
 
+/// A room with an exit of this width, and another room that lies a distance behind it and reaches over the side of the
+/// floor behind the exit by a share of the width; 0: they are flush. Everything is turned.
+fn rooms_aside(width: f64, behind: f64, over: f64, is_above: bool, angle: f64) -> Value {
+    let (x, low, high) = (10.0 + behind, 4.0, 4.0 + width);
+    let (y, top) = match is_above {
+        true => (high - over * width, high + 5.0),
+        false => (low - 5.0, low + over * width),
+    };
+    let (sin, cos) = angle.sin_cos();
+    let turned = |[x, y]: [f64; 2]| json!([x * cos - y * sin, x * sin + y * cos]);
+    let rectangle = |[x0, y0]: [f64; 2], [x1, y1]: [f64; 2]| {
+        json!([[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(turned))
+    };
+    let line = [[10.0, low], [10.0, high]].map(turned);
+    let inside = rectangle(
+        [x + 0.3, y.max(high + 0.3).min(top - 1.0)],
+        [x + 2.0, top - 0.3],
+    );
+    let below = rectangle([x + 0.3, y + 0.3], [x + 2.0, low - 0.3]);
+    json!({
+        "walkable_area": [[rectangle([0.0, 0.0], [10.0, 12.0])], [rectangle([x, y], [x + 4.0, top])]],
+        "exits": [{"name": "east", "line": line}],
+        "crowds": [{"area": if is_above { inside } else { below }, "number": 2}],
+    })
+}
+
+proptest! {
+    #![proptest_config(config(200))]
+
+    #[test]
+    fn no_way_leads_from_a_room_beside_the_floor_behind_an_exit(
+        width in 1.0..6.0, behind in prop_oneof![0.65..3.0, 3.0..6.0],
+        over in prop_oneof![Just(0.0), 0.0..0.08], is_above: bool, angle in prop_oneof![Just(0.0), -3.0..3.0],
+    ) {
+        let rooms = rooms_aside(width, behind, over, is_above, angle);
+        let refused = scenario(&rooms, &[]).err().unwrap_or_default();
+        prop_assert!(refused.contains("no way leads"), "{refused}");
+    }
+}
+
+/// A room around a corner, whose wall begins at the end of an exit: nobody goes through it to the exit from behind.
+#[test]
+fn people_beside_the_floor_behind_an_exit_go_around_the_corner() {
+    let leg = json!({
+        "profile": "steer+sph",
+        "walkable_area": [[[[0, 0], [10, 0], [10, 4], [16, 4], [16, 8], [0, 8]]]],
+        "exits": [{"name": "out", "line": [[10, 1], [10, 4]]}],
+        "crowds": [{"area": [[12, 5], [15.5, 5], [15.5, 7.5], [12, 7.5]], "number": 20}],
+        "duration_secs": 60,
+    });
+    let mut simulation = start(&leg, &[]);
+    for _ in 0..1500 {
+        simulation.evaluate().unwrap();
+        let agents = &simulation.frame().agents;
+        for i in agents.present() {
+            let p = agents.position[i];
+            assert!(p.x < 10.1 || p.y > 3.95, "{p}: behind the exit");
+        }
+        simulation.integrate().unwrap();
+    }
+    assert_eq!(simulation.outcome().arrivals.len(), 20);
+}
+
 #[test]
 fn people_before_a_closed_exit_move_as_fast_as_their_velocities_say_and_get_no_farther_than_it() {
     let closed = json!({

@@ -128,7 +128,8 @@ pub fn whole(source: &Source) -> Result<(Value, Vec<String>), Refusal> {
 /// The document of the files that a page has opened: a floor plan, or a scenario with the files that it names.
 ///
 /// # Errors
-/// It cannot be read, or one of the files does not belong to it.
+/// It cannot be read, or one of the files does not belong to it. A scenario that needs no other file is opened with its
+/// problems.
 pub fn opened(files: &[(String, &[u8])]) -> Result<Value, Refusal> {
     let named = |(name, content): &(String, &[u8])| -> Result<(PathBuf, Vec<u8>), Refusal> {
         let last = Path::new(name).file_name();
@@ -147,11 +148,22 @@ pub fn opened(files: &[(String, &[u8])]) -> Result<Value, Refusal> {
         .iter()
         .map(|(path, bytes)| (&**path, &**bytes))
         .collect();
-    let (mut document, notes) = read(&parts)?;
+    let (mut document, notes) = match (read(&parts), parts.as_slice()) {
+        (Err(refusal), [(_, text)]) => (mendable(text).ok_or(refusal)?, Vec::new()),
+        (read, _) => read?,
+    };
     if document.get("name").is_none() {
         document["name"] = stem.to_string_lossy().into();
     }
     Ok(json!({"document": document, "notes": notes}))
+}
+
+/// The document of a wrong scenario, if it needs no other file: it is drawn with its problem, and can be mended.
+fn mendable(text: &[u8]) -> Option<Value> {
+    let document: Value = serde_json::from_slice(text).ok()?;
+    let has = |key: &str| document[key].is_array();
+    let is_scenario = has("walkable_area") || has("obstacles") || has("levels");
+    (is_scenario && files_named_in(&document).is_empty()).then_some(document)
 }
 
 /// Gives the files after the first, a scenario, the paths by which it names them.

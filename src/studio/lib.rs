@@ -14,9 +14,9 @@ mod beside;
 
 mod feed;
 
-mod snapshots;
-
 mod doors;
+
+mod snapshots;
 
 mod pace;
 

@@ -22,7 +22,7 @@ use crate::beside::Beside;
 use crate::doors::Doors;
 use crate::feed::Feed;
 use crate::pace::Pace;
-use crate::snapshots::Snapshots;
+use crate::snapshots::{Snapshot, Snapshots};
 
 /// The most pictures per second that pages get.
 const PICTURES: f64 = 30.0;
@@ -50,6 +50,8 @@ pub struct Player {
     /// The time from which on queues are observed, seconds.
     observed_from: f64,
     fault: Option<String>,
+    /// The number of the frame that pages got last.
+    sent: Option<u64>,
     /// The frame to which the run moves as fast as it can, before it is shown again.
     target: Option<u64>,
     pace: Pace,
@@ -68,27 +70,34 @@ impl Player {
         viewer: Option<Address>,
     ) -> Result<Self, Refusal> {
         let run = Run::new(scenario).map_err(Refusal::impossible)?;
-        Self::of(run, None, feed, viewer)
+        let first = Snapshot {
+            frame: run.simulation.frame().clock.frame(),
+            events: Events::new(run.scenario.entering),
+            doors: Doors::default(),
+            run,
+        };
+        Self::of(first, Snapshots::default(), feed, viewer)
     }
 
     fn of(
-        mut run: Run,
-        events: Option<Events>,
+        first: Snapshot,
+        snapshots: Snapshots,
         feed: Arc<Feed>,
         viewer: Option<Address>,
     ) -> Result<Self, Refusal> {
+        let mut run = first.run;
         // Densities depend on those before, so every frame needs them.
         run.simulation.request_density_until(u64::MAX);
         run.simulation.evaluate().map_err(Refusal::impossible)?;
         let (live, drawing) = page(&run);
         let time = run.simulation.frame().clock.time();
         let mut player = Self {
-            events: events.unwrap_or_else(|| Events::new(run.scenario.entering)),
+            events: first.events,
             run,
             live: Arc::new(live),
             drawing,
-            doors: Doors::default(),
-            snapshots: Snapshots::default(),
+            doors: first.doors,
+            snapshots,
             feed,
             beside: Beside::new(viewer),
             ms_per_frame: 0.0,
@@ -96,6 +105,7 @@ impl Player {
             ended: None,
             observed_from: time,
             fault: None,
+            sent: None,
             target: None,
             pace: Pace::at(time),
             shown: Instant::now(),
@@ -198,7 +208,7 @@ impl Player {
     fn observe(&mut self) {
         self.run.measure();
         self.doors.observe(&self.run.simulation);
-        match self.snapshots.add(&self.run, &self.events) {
+        match self.snapshots.add(&self.run, &self.events, &self.doors) {
             Ok(true) => self.warn(),
             Ok(false) => {}
             Err(problem) => self.fault = Some(problem),
@@ -229,6 +239,7 @@ impl Player {
         self.feed.add(self.live.coded(&moment), is_back);
         self.beside.show(&self.run, is_back, self.ms_per_frame);
         self.shown = Instant::now();
+        self.sent = Some(simulation.frame().clock.frame());
     }
 
     /// Tells pages the state.
@@ -259,6 +270,11 @@ impl Player {
             self.pace.begin(self.run.simulation.frame().clock.time());
         } else {
             self.stop();
+            // A page that stops shows the frame in which the run stops.
+            let frame = self.run.simulation.frame().clock.frame();
+            if self.target.is_none() && self.sent != Some(frame) {
+                self.show(false);
+            }
         }
         self.tell();
     }
@@ -332,7 +348,7 @@ impl Player {
             let back = known.ok_or_else(|| Refusal::wrong("to: the run began later"))?;
             self.run = back.run;
             self.events = back.events;
-            self.doors = Doors::default();
+            self.doors = back.doors;
             self.ended = None;
             self.observed_from = self.run.simulation.frame().clock.time();
             self.fault = None;
@@ -418,7 +434,13 @@ impl Player {
     /// A measurement cannot be copied, or the run is on its way to another time.
     pub fn fork(&self, feed: Arc<Feed>) -> Result<Self, Refusal> {
         let run = self.shown()?.fork().map_err(Refusal::failed)?;
-        Self::of(run, Some(self.events.clone()), feed, self.beside.viewer())
+        let now = Snapshot {
+            frame: run.simulation.frame().clock.frame(),
+            run,
+            events: self.events.clone(),
+            doors: self.doors.clone(),
+        };
+        Self::of(now, self.snapshots.clone(), feed, self.beside.viewer())
     }
 
     /// The forces on a person, as `sandbox inspect --json` has them.

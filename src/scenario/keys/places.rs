@@ -44,7 +44,8 @@ pub struct Door {
     /// The direction [x, y] in which people can pass. Default: both.
     #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub one_way: Option<[f64; 2]>,
-    /// Times between which people cannot pass, seconds: a list of [from, until].
+    /// Times between which people cannot pass, seconds: a list of [from, until]. Until 1e7: until an intervention opens
+    /// it.
     #[serde(default)]
     #[schemars(inner(inner(range(min = 0, max = LONGEST_TIME))))]
     pub closed_secs: Vec<[f64; 2]>,

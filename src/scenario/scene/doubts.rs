@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use crate::error::quote::shown;
 use crate::file::File;
 use crate::keys::catalog;
+use crate::keys::limits::LONGEST_TIME;
 use crate::keys::people::Spacing;
 use crate::keys::places::Exit;
 use crate::keys::profiles::ProfileChoice;
@@ -325,7 +326,12 @@ fn closed(scene: &Scene, last: f64) -> Vec<String> {
         let first: Vec<&Change> = changes.take_while(|one| one.at < last).collect();
         let starts_closed = |one: &&Change| one.at <= 0.0 && one.kind == ChangeKind::Close;
         let opens = |one: &&Change| one.kind == ChangeKind::Open;
-        let is_closed = first.iter().any(starts_closed) && !first.iter().any(opens);
+        // Until the longest time there is: until it is opened by hand.
+        let by_hand = journeys
+            .changes
+            .iter()
+            .any(|one| one.place == number && one.at >= LONGEST_TIME);
+        let is_closed = !by_hand && first.iter().any(starts_closed) && !first.iter().any(opens);
         is_closed.then(|| {
             format!(
                 "{list}[{k}]: `{}` is closed for the whole run: people to whose goal no other way leads wait before \

@@ -12,6 +12,8 @@ pub type Door = ([Vector; 2], f64);
 /// The floor behind the line of an exit on the edge of the walkable area is this long, meters: the bodies of those who
 /// have left walk on there. The floor behind an entrance ends at [`WIDE_AT`].
 pub const BEHIND: f64 = WALKS_ON + BEFORE_WALLS;
+/// A floor that lies this near at its side, meters, is right beside it.
+const BESIDE: f64 = 0.01;
 /// Another room that is this near behind a line, meters, is next door: the line lies in a door between both. Walls of
 /// buildings are not thicker.
 const NEXT_DOOR: f64 = 0.6;
@@ -28,9 +30,16 @@ pub const OVERLAP: f64 = 0.01;
 
 /// That floor widens by this on both sides, meters, or less where something else is near: RVO stops in front of a dead
 /// end as wide as a door.
-const WIDENS: [f64; 4] = [3.0, 2.0, 1.0, 0.0];
+const WIDENS: [f64; 3] = [3.0, 2.0, 1.0];
 /// It has widened this far behind the line, meters.
 pub const WIDE_AT: f64 = 3.0;
+/// Where another floor lies right beside it, it narrows by the first of these on both sides, meters, that leaves a wall
+/// between.
+const NARROWS: [f64; 3] = [0.1, 0.3, 0.6];
+/// It is not narrower than this, meters.
+const NARROWEST: f64 = 0.4;
+/// It has narrowed this far behind the line, meters.
+const NARROW_AT: f64 = 0.5;
 
 /// The floor behind the line of an exit or entrance on the edge of the walkable area.
 pub struct Opening {
@@ -59,7 +68,7 @@ pub fn openings(walkable: &[Area], doors: &[Door]) -> Vec<Opening> {
         };
         let wide = WIDENS.into_iter().map(|widens| opening.widened(widens));
         let mut free = wide.filter(|wide| !wide.places().any(|p| is_taken(p, wide.widens)));
-        free.next().unwrap_or_else(|| opening.widened(0.0))
+        free.next().unwrap_or_else(|| opening.apart(&is_floor))
     };
     openings.iter().map(widest).collect()
 }
@@ -107,6 +116,39 @@ impl Opening {
         })
     }
 
+    /// As wide as the line, or narrower where another floor lies right beside it.
+    fn apart(&self, is_floor: &impl Fn(Vector) -> bool) -> Self {
+        let straight = self.widened(0.0);
+        if !straight.touches(is_floor) {
+            return straight;
+        }
+        let width = (self.ends[1] - self.ends[0]).norm();
+        let wide = |narrows: &f64| width - 2.0 * narrows >= NARROWEST;
+        let mut narrow = NARROWS
+            .into_iter()
+            .filter(wide)
+            .map(|narrows| self.widened(-narrows));
+        let apart = narrow.find(|narrow| !narrow.touches(is_floor));
+        apart.unwrap_or(straight)
+    }
+
+    /// Whether another floor lies at its sides, where it is as wide as it gets.
+    fn touches(&self, is_floor: &impl Fn(Vector) -> bool) -> bool {
+        const STEPS: u32 = 100;
+        let [along, _] = self.directions;
+        let first = NARROW_AT.max(self.before);
+        let steps =
+            (0..STEPS).map(|k| first + (self.depth - first) * f64::from(k) / f64::from(STEPS));
+        !self.is_next_door()
+            && steps.into_iter().any(|step| {
+                let sides = [(0.0, -along), (1.0, along)];
+                let beside = |(across, away): (f64, Vector)| {
+                    is_floor(self.place(step, across) + away * BESIDE)
+                };
+                sides.into_iter().any(beside)
+            })
+    }
+
     fn widened(&self, widens: f64) -> Self {
         Self { widens, ..*self }
     }
@@ -118,7 +160,15 @@ impl Opening {
 
     /// How much wider it is on each side `step` meters behind the line, meters.
     fn aside(&self, step: f64) -> f64 {
-        self.widens * (step / WIDE_AT).clamp(0.0, 1.0)
+        self.widens * (step / self.bends_at()).clamp(0.0, 1.0)
+    }
+
+    /// It gets no wider or narrower from this far behind the line on, meters.
+    fn bends_at(&self) -> f64 {
+        match self.widens < 0.0 {
+            true => NARROW_AT,
+            false => WIDE_AT,
+        }
     }
 
     /// The place `step` meters behind the line; `across` is 0 on one side and 1 on the other.
@@ -133,11 +183,21 @@ impl Opening {
     fn places(&self) -> impl Iterator<Item = Vector> {
         const STEPS: u32 = 24;
         let part = |k: u32| f64::from(k) / f64::from(STEPS);
-        let steps = if self.widens > 0.0 { 1..STEPS } else { 0..0 };
-        steps.flat_map(move |k| {
+        // The room next door begins at its end.
+        let last = if self.is_next_door() {
+            STEPS - 1
+        } else {
+            STEPS
+        };
+        (1..=last).flat_map(move |k| {
             let step = self.depth * part(k);
             (0..=STEPS).map(move |l| self.place(step, part(l)))
         })
+    }
+
+    /// Whether it leads to the room behind a wall.
+    fn is_next_door(&self) -> bool {
+        self.depth <= NEXT_DOOR
     }
 
     fn contains(&self, p: Vector) -> bool {
@@ -154,7 +214,7 @@ impl Opening {
         let mut outline: Vec<Vector> = ring.into_iter().map(Vector::from).collect();
         let [along, out] = self.directions;
         // The floor begins to widen where it begins, before the edge.
-        let end = self.depth.min(WIDE_AT);
+        let end = self.depth.min(self.bends_at());
         let part = (self.before + OVERLAP) / (end + OVERLAP);
         let aside = self.aside(end) * part - self.aside(self.before);
         if let [first, .., last] = &mut outline[..] {
@@ -168,8 +228,12 @@ impl Opening {
 
     /// The corners, from `first` meters behind the line.
     pub fn ring(&self, first: f64) -> Vec<[f64; 2]> {
-        let is_long = self.depth > WIDE_AT;
-        let ends = [Some(first), is_long.then_some(WIDE_AT), Some(self.depth)];
+        let bend = self.bends_at();
+        let ends = [
+            Some(first),
+            (self.depth > bend).then_some(bend),
+            Some(self.depth),
+        ];
         let steps = ends.into_iter().flatten();
         let there = steps.clone().map(|step| self.place(step, 1.0));
         let back = steps.rev().map(|step| self.place(step, 0.0));

@@ -165,7 +165,7 @@ class RemoveTool extends BrushTool {
 class GoalTool extends BrushTool {
   points = true;
   chosen = [];
-  hint = "Click the new goal of the followed person; else click people, then their goal.";
+  hint = "Click the new goal of the followed person; else people, then their goal.";
 
   release(place) {
     const { people, followed } = this.player;

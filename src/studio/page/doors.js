@@ -54,9 +54,10 @@ class Doors {
     return element("p", { className: "slider" }, element("span", { textContent: name }), button);
   }
 
-  /** Shows the numbers of all doors. */
-  show(doors) {
+  /** Shows the numbers of all doors; those of an earlier time, given in words, cannot be opened or closed. */
+  show(doors, earlier = "") {
     document.getElementById("doors").hidden = !doors.length;
+    Doors.write(document.getElementById("doors-at"), earlier);
     for (const door of doors) {
       const key = `${door.kind} ${door.name}`;
       if (!this.rows.has(key)) this.rows.set(key, this.row(door));
@@ -64,6 +65,7 @@ class Doors {
       const numbers = [door.passed ?? "–", door.queue ?? "–", shown(door.flow_per_s, 2)];
       numbers.forEach((number, k) => Doors.write(cells[k], String(number)));
       Doors.write(button, door.open ? "Close" : "Open");
+      button.disabled = Boolean(earlier);
       row.classList.toggle("closed", !door.open);
       button.ariaLabel = `${button.textContent} ${key}`;
     }

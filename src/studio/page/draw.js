@@ -12,6 +12,10 @@ class Drawing {
   static JOINING = 1000;
   /** People of the default size that surely find room, per square meter. */
   static FIT = 2.5;
+  /** A place in the reason of a problem. */
+  static PLACE = /\((-?[\d.]+(?:e-?\d+)?), (-?[\d.]+(?:e-?\d+)?)\)/;
+  /** The key path of an element in a message, and the dot before a key in it. */
+  static KEYS = /((?:\blevels\[\d+\]\.)?\b[a-z_]+\[\d+\])(\.(?=[a-z]))?/g;
 
   constructor(studio) {
     this.studio = studio;
@@ -104,7 +108,6 @@ class Drawing {
     document.getElementById("draw-undo").disabled = !this.done.length;
     document.getElementById("draw-redo").disabled = !this.undone.length;
     this.showLevels();
-    this.showEmpty();
     this.store();
     clearTimeout(this.checking);
     this.checking = setTimeout(() => this.check(), Drawing.CHECKING);
@@ -151,8 +154,8 @@ class Drawing {
   add(tool, points) {
     const { document } = this, field = id => Number(globalThis.document.getElementById(id).value);
     const thickness = Math.min(Math.max(field("draw-thickness") || 0, 0), 10);
-    const options = { document, thickness, number: this.numberIn(points, field("draw-number")) };
-    const [list, made] = PENCILS[tool].make(points, options);
+    const { number, isLess } = this.numberIn(points);
+    const [list, made] = PENCILS[tool].make(points, { document, thickness, number });
     let path = [list];
     this.change(document => {
       if (list === "goal") {
@@ -171,6 +174,8 @@ class Drawing {
     });
     this.select(pathText(path));
     if (!PENCILS[tool].stays) this.draft.choose("select");
+    const find = number === 1 ? "1 person finds" : `${number} people find`;
+    if (list === "crowds" && isLess) this.say(`${find} room here; type another number in the form.`);
   }
 
   /** The number of the level that is drawn, or -1. */
@@ -178,10 +183,13 @@ class Drawing {
     return (this.document.levels ?? []).findIndex?.(level => level.name === this.level) ?? -1;
   }
 
-  /** The number of people that is asked for, or fewer where they find no room. */
-  numberIn(area, asked) {
-    const most = Math.floor(Drawing.FIT * Math.abs(twiceArea(area)) / 2);
-    return Math.max(Math.min(Math.round(asked) || 1, most), 1);
+  /** The number of people that was typed; without one, the default, or less where fewer find room. */
+  numberIn(area) {
+    const { value, defaultValue } = document.getElementById("draw-number");
+    const typed = Math.round(Number(value)), usual = Number(defaultValue);
+    if (typed >= 1 && value !== defaultValue) return { number: typed, isLess: false };
+    const most = Math.max(Math.floor(Drawing.FIT * Math.abs(twiceArea(area)) / 2), 1);
+    return { number: Math.min(usual, most), isLess: most < usual };
   }
 
   /** Opens the straight wall along which a door lies; the line of the door, in its middle. */
@@ -304,7 +312,6 @@ class Drawing {
     }
     if (version !== this.version) return;
     this.checked = version;
-    this.problem = found.problem;
     this.showFound(found);
   }
 
@@ -321,21 +328,40 @@ class Drawing {
   }
 
   showFound({ problem, notes, people }) {
-    const line = document.getElementById("draw-problem");
+    this.problem = problem && { ...problem, reason: problem.reason && this.named(problem.reason) };
+    const line = document.getElementById("draw-problem"), named = notes.map(note => this.named(note));
     line.classList.toggle("wrong", Boolean(problem));
+    line.classList.toggle("noted", !problem && notes.length > 0);
     const count = Number.isFinite(people) ? `, ${people} ${people === 1 ? "person" : "people"} at the start` : "";
-    const { wrong } = this, said = wrong && problem.reason ? `${wrong.name}: ${problem.reason}` : problem?.message;
     const more = notes.length > 1 ? `, and ${notes.length - 1} more below` : "";
-    const noted = notes.length ? ` Note: ${notes[0]}${more}.` : "";
-    line.textContent = this.shapes.length || problem ? said ?? `Ready to play${count}.${noted}` : "";
-    const items = notes.map(text => element("li", { textContent: text }));
-    document.getElementById("draw-notes").replaceChildren(...items);
+    const noted = notes.length ? ` Note: ${named[0]}${more}.` : "";
+    line.textContent = this.shapes.length || problem ? this.problemText ?? `Ready to play${count}.${noted}` : "";
+    document.getElementById("draw-notes").replaceChildren(...named.map(text => element("li", { textContent: text })));
     const list = document.getElementById("draw-noted");
     list.hidden = !notes.length;
     list.firstElementChild.textContent = `Notes (${notes.length})`;
     this.elements.show();
     this.form.showProblem();
-    this.showAll();
+    this.sheet.show();
+  }
+
+  /** A message with the names of elements in place of key paths such as `doors[0]`. */
+  named(text) {
+    const named = path => this.shapes.find(({ whole }) => pathText(whole) === path)?.name;
+    return text.replace(Drawing.KEYS, (all, path, dot) => named(path) ? `${named(path)}${dot ? ", " : ""}` : all);
+  }
+
+  /** The problem in words: the element, or else the key path, and the reason. */
+  get problemText() {
+    if (!this.problem?.reason) return this.problem?.message;
+    const { wrong, problem: { path, reason } } = this;
+    const place = wrong && pathKeys(path).length >= wrong.whole.length ? wrong.name : path;
+    return place ? `${place}: ${reason}` : reason;
+  }
+
+  /** The place that the reason of the problem names. */
+  get wrongPlace() {
+    return Drawing.PLACE.exec(this.problem?.reason)?.slice(1).map(Number) ?? null;
   }
 
   /** The element in which the problem lies. */
@@ -351,21 +377,22 @@ class Drawing {
   /** Selects the element with the problem. */
   showProblem() {
     if (!this.problem) return;
-    const { wrong } = this;
+    const { wrong, wrongPlace } = this;
     this.select(wrong?.text ?? null);
-    if (wrong?.strokes.length) this.sheet.reveal(wrong.middle);
+    if (wrongPlace) this.sheet.reveal(wrongPlace);
+    else if (wrong?.strokes.length) this.sheet.reveal(wrong.middle);
     if (!this.form.showProblem(true)) this.elements.focus(wrong);
   }
 
-  /** The message beside the element with the problem. */
+  /** The message beside the place or the element with the problem. */
   showMark() {
-    const mark = document.getElementById("draw-mark"), { wrong, sheet } = this;
+    const mark = document.getElementById("draw-mark"), { wrong, wrongPlace, sheet } = this;
     for (const own of sheet.world.children) own.classList.toggle("wrong", own.dataset.path === wrong?.text);
-    mark.hidden = !wrong?.strokes.length || !this.shown.includes(wrong);
+    const points = wrongPlace ? [wrongPlace] : wrong?.strokes[0]?.points;
+    mark.hidden = !points || wrong?.strokes.length > 0 && !this.shown.includes(wrong);
     if (mark.hidden) return;
     mark.textContent = this.problem.reason ?? this.problem.message;
-    const [low, high] = extent(wrong.strokes[0].points), [x, y] = sheet.toSheet([high[0], high[1]]);
-    const [, bottom] = sheet.toSheet(low);
+    const [low, high] = extent(points), [x, y] = sheet.toSheet(high), [, bottom] = sheet.toSheet(low);
     const left = Math.min(Math.max(x + 10, 6), sheet.width - mark.offsetWidth - 52);
     mark.style.left = `${Math.max(left, 6)}px`;
     const above = y - mark.offsetHeight - 8, lowest = sheet.height - mark.offsetHeight - 40;
@@ -378,8 +405,8 @@ class Drawing {
       await this.studio.play(this.document);
     } catch (error) {
       if (this.studio.mode !== "draw") this.studio.open("draw");
-      this.problem = { path: error.path ?? "", reason: error.reason, message: this.studio.words(error) };
-      this.showFound({ problem: this.problem, notes: [] });
+      const problem = { path: error.path ?? "", reason: error.reason, message: this.studio.words(error) };
+      this.showFound({ problem, notes: [] });
       this.showProblem();
     }
   }
@@ -387,12 +414,14 @@ class Drawing {
   /* What is shown. */
 
   showAll() {
-    document.getElementById("draw-hint").textContent = this.draft.hint;
+    this.say(this.draft.hint);
     this.sheet.show();
   }
 
+  /** Shows a hint; what finds no room in its line, too, when the pointer rests on it. */
   say(text) {
-    document.getElementById("draw-hint").textContent = text;
+    const hint = document.getElementById("draw-hint");
+    [hint.textContent, hint.title] = [text, text];
   }
 
   tellPlace([x, y]) {
@@ -409,9 +438,10 @@ class Drawing {
     return isEmpty ? "Now draw a crowd: press C, then drag in the room." : "";
   }
 
+  /** Shows what to do next, unless something is drawn right now or lies beneath, to be traced. */
   showEmpty() {
     const empty = document.getElementById("draw-empty");
-    empty.textContent = this.nextHint;
+    empty.textContent = this.draft.isBegun || this.underlay.image ? "" : this.nextHint;
     empty.hidden = !empty.textContent;
     empty.classList.toggle("first", !this.shapes.some(shape => shape.strokes.length));
   }

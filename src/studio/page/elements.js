@@ -95,8 +95,15 @@ class Underlay {
     $("image-remove").addEventListener("click", () => this.remove());
     $("image-opacity").addEventListener("input", event => this.image?.setAttribute("opacity", event.target.value));
     $("image-meters").addEventListener("change", event => this.setLength(Number(event.target.value)));
-    /** The two points whose distance is known, while they are chosen. */
+    $("image-meters").addEventListener("keydown", event => event.key === "Escape" && this.cancel());
+    this.image = null;
+    /** The two points whose distance is known, until it is. */
     this.points = null;
+  }
+
+  /** Whether the next click is a point for the scale. */
+  get isMeasuring() {
+    return this.points !== null && this.points.length < 2;
   }
 
   /** Lays an image into the middle of the sheet, half as wide as it. */
@@ -132,13 +139,17 @@ class Underlay {
   measure() {
     this.points = [];
     this.length.hidden = true;
+    document.getElementById("draw-image").open = true;
+    this.drawing.draft.next = null;
+    this.drawing.sheet.show();
     this.drawing.say("Click two points of the image whose distance you know, then type it.");
   }
 
   /** Takes a point for the scale; whether one was asked for. */
   press(place) {
-    if (!this.points || this.points.length === 2) return false;
+    if (!this.isMeasuring) return false;
     this.points.push(place);
+    this.drawing.sheet.show();
     if (this.points.length === 2) {
       this.length.hidden = false;
       const field = document.getElementById("image-meters");
@@ -157,17 +168,32 @@ class Underlay {
     if (!Number.isFinite(factor)) return;
     this.pixel *= factor;
     this.corner = this.corner.map((x, axis) => first[axis] + factor * (x - first[axis]));
+    this.show();
+    this.cancel();
+    this.drawing.say("The image has its scale: trace it.");
+  }
+
+  /** Forgets the points for the scale; whether there were some, or could be. */
+  cancel() {
+    const wasBegun = this.points !== null;
     this.points = null;
     this.length.hidden = true;
-    this.show();
-    this.drawing.say("The image has its scale: trace it.");
+    this.drawing.showAll();
+    return wasBegun;
+  }
+
+  /** The points for the scale, and the line between them, in pixels. */
+  marks(sheet) {
+    const points = this.points ?? [], made = points.map(place => sheet.crossAt(place, "scale"));
+    const d = Sheet.path(points.map(place => sheet.toSheet(place)));
+    return points.length === 2 ? [...made, svg("path", { class: "spot scale", d })] : made;
   }
 
   remove() {
     this.image?.remove();
     this.drawing.sheet.root.classList.remove("traces");
-    this.image = this.points = null;
-    this.length.hidden = true;
+    this.image = null;
+    this.cancel();
     for (const id of ["image-measure", "image-remove"]) document.getElementById(id).disabled = true;
   }
 }

@@ -79,8 +79,7 @@ class Hand {
     const { drawing, sheet } = this, at = [event.clientX, event.clientY], last = this.fingers.get(event.pointerId);
     const place = sheet.toPlan(event);
     if (!last) {
-      if (drawing.draft.pencil.form && !drawing.draft.isByKey) drawing.draft.point(place, this.snaps(event));
-      else drawing.tellPlace(place);
+      this.hover(event, place);
       return;
     }
     if (!this.hasMoved && distance(at, this.from) < Hand.CLICK) return;
@@ -88,6 +87,13 @@ class Hand {
     this.fingers.set(event.pointerId, at);
     if (this.fingers.size > 1) this.pinch(event.pointerId, last, at);
     else this.drag(event, place, last, at);
+  }
+
+  /** Moves the next point, unless the keys have moved it. */
+  hover(event, place) {
+    const { draft, underlay } = this.drawing;
+    if (!draft.pencil.form || underlay.isMeasuring) this.drawing.tellPlace(place);
+    else if (!draft.isByKey) draft.point(place, this.snaps(event));
   }
 
   drag(event, place, last, at) {
@@ -260,7 +266,7 @@ class Hand {
   /** Ends what is begun: the element, the tool, the choice of a corner, the selection. */
   escape() {
     const { drawing } = this, { draft } = drawing;
-    if (draft.cancel()) return;
+    if (draft.cancel() || drawing.underlay.cancel()) return;
     if (draft.pencil.form) draft.choose("select");
     else if (drawing.corner) {
       drawing.corner = null;

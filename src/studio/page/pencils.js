@@ -90,16 +90,22 @@ class Snapping {
     this.drawing = drawing;
   }
 
+  /** The distance of the lines that attract, meters: images have finer corners than the grid that is shown. */
+  get step() {
+    const { sheet, underlay } = this.drawing;
+    return underlay.image ? clean(sheet.step / 10) : sheet.step;
+  }
+
   /** The place that is meant, and what it lies on. `from` has the corners before it, and `skip` is left out. */
   at(place, { isFree = false, isSquare = false, from = [], skip = null } = {}) {
-    const { sheet } = this.drawing;
+    const { step, drawing: { sheet } } = this;
     const strokes = this.drawing.shown.filter(shape => shape !== skip).flatMap(shape => shape.strokes);
     if (isFree) return { place: place.map(toThousandths), on: null };
     if (isSquare && from.length) return { place: this.square(place, from), on: "square" };
     const corners = [...strokes.flatMap(stroke => stroke.points), ...from];
     const corner = this.nearest(corners, place, Snapping.CORNER / sheet.scale);
     if (corner) return { place: [...corner], on: "corner" };
-    const round = place.map(x => clean(Math.round(x / sheet.step) * sheet.step));
+    const round = place.map(x => clean(Math.round(x / step) * step));
     const edges = strokes.flatMap(({ points, isClosed }) => points.slice(isClosed ? 0 : 1)
       .map((end, k) => isClosed ? [end, points[(k + 1) % points.length]] : [points[k], end]));
     const near = this.nearest(edges.map(([a, b]) => nearestOn(a, b, place)), place, Snapping.EDGE / sheet.scale);
@@ -125,7 +131,7 @@ class Snapping {
       const own = Math.atan2(last[1] - before[1], last[0] - before[0]);
       angles.push(own, own + Math.PI / 2);
     }
-    const step = this.drawing.sheet.step;
+    const { step } = this;
     const on = angles.map(angle => {
       const along = (place[0] - last[0]) * Math.cos(angle) + (place[1] - last[1]) * Math.sin(angle);
       const length = Math.round(along / step) * step;
@@ -186,9 +192,11 @@ class Draft {
   get hint() {
     const { form, hint } = this.pencil, count = this.points.length;
     if (!form) return this.drawing.selected ? this.drawing.selectedHint : hint;
-    if (!count) return `${hint} Keys: arrows and Enter, or type a place: =3;4.`;
-    if (form === "box") return "The opposite corner: click, press Enter, or type 8x6 for 8 m × 6 m. Escape ends.";
-    const typed = "Type 4.5 for a length, or 4.5,90 for length and angle; Shift: right angles.";
+    const free = "Alt: no snapping.";
+    if (!count) return `${hint} ${free} Keys: arrows and Enter, or type a place: =3;4.`;
+    const opposite = "The opposite corner: click, press Enter, or type 8x6 for 8 m × 6 m.";
+    if (form === "box") return `${opposite} ${free} Escape ends.`;
+    const typed = `Type 4.5 for a length, or 4.5,90 for length and angle. Shift: right angles. ${free}`;
     if (form === "line" || form === "spot") return `The other end: click or press Enter. ${typed}`;
     const enough = count >= (form === "area" ? 3 : 2);
     const close = form === "area" ? "Click the first corner, or press Enter twice, to close." : "Enter twice ends.";
@@ -312,6 +320,7 @@ class Draft {
     if (this.isSized && this.points.length === 1) this.finish(rectangle(this.points[0], this.next));
     else this.place(true);
     this.drawing.sheet.reveal(this.next);
+    this.drawing.tellPlace(this.next);
   }
 
   /** The place that is typed: a length, length and angle, a size, or coordinates. */

@@ -15,6 +15,8 @@ class Player extends Page {
   static BACK = 5;
   /** How long the browser may take to write a saved file, milliseconds. */
   static KEPT = 60_000;
+  /** Lines that end where their room ends; the whole text is in the title. */
+  static LINES = ["message", "hint", "said", "event", "going", "digest"];
   /** The player in the page, and the elements for the next one. */
   static current = null;
   static empty = null;
@@ -38,9 +40,10 @@ class Player extends Page {
   setUp() {
     const $ = id => document.getElementById(id), on = (id, does) => $(id).addEventListener("click", does);
     $("plan").before($("tools"));
-    $("plan").append($("looking"), $("problem"));
+    $("plan").append($("problem"));
     $("person").after($("own"), $("doors"), $("parameters"), $("happened"));
-    $("stage").append($("acts"));
+    $("moment").prepend($("event"));
+    $("stage").append($("moment"), $("acts"));
     $("speed").append(element("option", { value: "Infinity", textContent: "as fast as possible" }));
     super.setUp();
     /** The number of drawn pictures. */
@@ -62,7 +65,12 @@ class Player extends Page {
     on("all", () => this.tellAll());
     $("pace").addEventListener("input", event => $("paced").textContent = `${event.target.value} m/s`);
     $("pace").addEventListener("change", event => this.setPace(Number(event.target.value)));
-    this.run.listen(this.ending.signal, () => this.update());
+    const { signal } = this.ending;
+    for (const line of Player.LINES) {
+      $(line).addEventListener("pointerenter", ({ target }) => target.title = target.textContent, { signal });
+    }
+    document.addEventListener("click", event => this.giveBack(event), { signal });
+    this.run.listen(signal, () => this.update());
   }
 
   open() {
@@ -87,9 +95,15 @@ class Player extends Page {
 
   /** Shows why something did not work, near the plan, or nothing. */
   fail(error) {
-    const words = error instanceof TypeError ? `The program does not answer: ${error.message}` : error?.message;
     document.getElementById("problem").hidden = !error;
-    document.getElementById("reason").textContent = words ?? "";
+    document.getElementById("reason").textContent = error ? Player.words(error) : "";
+  }
+
+  /** An error as a sentence, without the key of the request. */
+  static words(error) {
+    if (error instanceof TypeError) return `The program does not answer: ${error.message}`;
+    const reason = (error.reason ?? error.message).replace(/^(speed|follow|to|step|play): /, "");
+    return `${reason[0].toUpperCase()}${reason.slice(1)}${/[.!?]$/.test(reason) ? "" : "."}`;
   }
 
   /** Says what was done. */
@@ -100,7 +114,7 @@ class Player extends Page {
   async control(asked) {
     const answer = await this.attempt(() => ask(`runs/${this.run.id}/control`, asked));
     if (!answer) return;
-    this.run.state = answer.state;
+    this.run.takeState(answer.state);
     this.update();
   }
 
@@ -133,7 +147,7 @@ class Player extends Page {
   /** Whether one looks back, where nothing can be done; says so. */
   refusesBack() {
     if (!this.isBack) return false;
-    this.fail(new Error(`You look at ${this.time.toFixed(2)} s. Press “Go back here” or “Return” first.`));
+    this.fail(new Error(`You look at ${this.clock}. Press “Go back here” or “Return” first.`));
     return true;
   }
 
@@ -160,24 +174,37 @@ class Player extends Page {
       const [, name] = /filename="([^"]+)"/.exec(answer.headers.get("Content-Disposition")) ?? [null, `run.${kind}`];
       return { name, content: await answer.blob() };
     });
-    this.say(file ? `${file.name} is saved.` : "");
+    this.say("");
     if (!file) return;
+    this.say(kind === "json" ? await this.savedWords(file) : `${file.name} is saved.`);
     const address = URL.createObjectURL(file.content);
     element("a", { href: address, download: file.name }).click();
     setTimeout(() => URL.revokeObjectURL(address), Player.KEPT);
   }
 
+  /** What a saved scenario has, in words. */
+  async savedWords({ name, content }) {
+    const { duration_secs: end } = JSON.parse(await content.text());
+    const isShown = Math.abs(end - this.time) < LiveRun.SAME;
+    const result = isShown ? "now, so a run of it gives the state shown" : "so a run of it gives the state then";
+    return `${name} is saved: it ends at ${shown(end)} s, ${result}.`;
+  }
+
   /* Time. */
 
+  /** Looks at the frame nearest to a time. */
   seek(time) {
     super.seek(time);
+    const { times } = this.run, frame = this.run.frameAt(this.time);
+    const isNearer = times[frame + 1] - this.time < this.time - times[frame];
+    this.time = times[isNearer ? frame + 1 : frame] ?? 0;
     this.isBack = this.time < this.run.newest - LiveRun.SAME;
     if (this.isBack && this.run.state.playing) {
       // The run waits for those who look back.
       this.run.state = { ...this.run.state, playing: false };
       this.control({ play: false });
     }
-    this.showBack();
+    this.showTime();
   }
 
   /** Looks at the newest frame again. */
@@ -185,7 +212,7 @@ class Player extends Page {
     this.isBack = false;
     this.time = this.run.newest;
     this.isDirty = true;
-    this.showBack();
+    this.showTime();
   }
 
   /** Looks one frame back or on; at the end of what is kept, the run computes one more. */
@@ -225,18 +252,19 @@ class Player extends Page {
 
   /** Shows what has come from the program. */
   update() {
+    this.askForPlan();
     if (document.hidden || document.body.dataset.mode !== "play") return;
     this.time = Math.min(this.time, this.run.newest);
     this.isDirty = true;
     this.showState();
-    this.refreshPlan();
-    const now = performance.now();
-    if (now - this.listed >= Player.LISTING || !this.run.state.playing) {
+    const now = performance.now(), { epoch } = this.run.known, isSetBack = epoch !== this.epoch;
+    this.epoch = epoch;
+    if (isSetBack || now - this.listed >= Player.LISTING || !this.run.state.playing) {
       this.listed = now;
-      this.doors.show(this.run.state.doors);
+      this.showTime();
       this.tellEvents();
     }
-    if (now - this.plotted < Player.PLOTTING) return;
+    if (!isSetBack && now - this.plotted < Player.PLOTTING) return;
     this.plotted = now;
     const shown = this.plots.plots.reduce((sum, plot) => sum + plot.series.length, 0);
     if (this.plots.known.length > shown) this.plots.build();
@@ -244,17 +272,36 @@ class Player extends Page {
     this.showEnds();
   }
 
-  /** Draws the plan anew when a door has opened or closed. */
-  async refreshPlan() {
-    const closed = this.run.state.doors.filter(door => !door.open).map(door => door.name).join("\n");
-    if (closed === this.closed) return;
-    const isFirst = this.closed === undefined;
-    this.closed = closed;
-    if (isFirst) return;
+  /** Asks for the plan when a door has opened or closed. */
+  async askForPlan() {
+    const closed = LiveRun.closedOf(this.run.state.doors);
+    this.planned ??= this.run.plans.keys().next().value;
+    if (closed === this.planned) return;
+    this.planned = closed;
     const found = await this.attempt(() => ask(`runs/${this.run.id}`));
     if (!found) return;
-    Object.assign(this.scene, { below: found.scene.below, above: found.scene.above });
+    this.run.keepPlan(found);
+    this.showPlan();
+  }
+
+  /** The doors at the time that is shown. */
+  get doorsShown() {
+    return this.isBack ? this.run.doorsAt(this.time) : this.run.state.doors;
+  }
+
+  /** Draws the plan with the doors of the time that is shown, if it is known. */
+  showPlan() {
+    const plan = this.run.plans.get(LiveRun.closedOf(this.doorsShown));
+    if (!plan || plan.above === this.scene.above) return;
+    Object.assign(this.scene, plan);
     this.plan.isStale = this.isDirty = true;
+  }
+
+  /** Shows what depends on the time that is shown, beside the people. */
+  showTime() {
+    this.showBack();
+    this.showPlan();
+    this.doors.show(this.doorsShown, this.isBack ? `at ${this.clock}` : "");
   }
 
   showState() {
@@ -279,7 +326,7 @@ class Player extends Page {
     const looking = document.getElementById("looking");
     looking.hidden = !this.isBack;
     if (!this.isBack) return;
-    const text = `You look at ${this.time.toFixed(2)} s; the run is at ${this.run.newest.toFixed(2)} s`;
+    const text = `You look at ${this.clock}; the run is at ${this.inDigits(this.run.newest)}`;
     looking.firstElementChild.textContent = text;
   }
 
@@ -301,14 +348,19 @@ class Player extends Page {
     document.getElementById("warnings").replaceChildren(...items);
   }
 
+  /** A time with the digits that the times of frames need. */
+  inDigits(time) {
+    return `${time.toFixed(this.run.digits)} s`;
+  }
+
   get clock() {
-    return `${this.time.toFixed(2)} s`;
+    return this.inDigits(this.time);
   }
 
   draw() {
     super.draw();
     if (!this.isShown) return;
-    this.pictures++;
+    if (this.pictures++ === 0) this.focusPlan();
     const own = this.people.person(this.followed), last = this.steps.at(-1);
     if (own && this.time !== last?.time) this.steps.push({ time: this.time, place: own.place });
   }
@@ -381,10 +433,24 @@ class Player extends Page {
     return this.tools.release(isDone);
   }
 
+  focusPlan() {
+    document.getElementById("top").focus({ preventScroll: true });
+  }
+
+  /** After a click by pointer, keys act on the run again; Tab keeps what it has reached. */
+  giveBack({ target, detail }) {
+    const clicked = target.closest("button, summary, #time");
+    if (!clicked || detail === 0 || document.body.dataset.mode !== "play") return;
+    // Arrow keys go on from frame to frame, with every tool.
+    if (clicked.closest("#controls")) clicked.blur();
+    else this.focusPlan();
+  }
+
   key(event) {
     if (document.body.dataset.mode !== "play" || event.ctrlKey || event.metaKey || event.altKey) return;
     const { tagName } = event.target, isTyping = ["SELECT", "INPUT", "TEXTAREA"].includes(tagName);
-    if (isTyping && event.key !== "Escape" || tagName === "SUMMARY" && event.key === " ") return;
+    const isPressed = ["BUTTON", "SUMMARY"].includes(tagName) && [" ", "Enter"].includes(event.key);
+    if (isTyping && event.key !== "Escape" || isPressed) return;
     if (this.tools.key(event)) event.preventDefault();
     else if (event.key.toLowerCase() === "b") this.goBack(this.time - Player.BACK);
     else super.key(event);

@@ -195,9 +195,17 @@ class Sheet {
     for (const shape of drawing.shown) made.push(...this.flagsOf(shape));
     made.push(...this.names());
     if (selected) made.push(...this.gripsOf(selected, corner));
-    made.push(...draft.marks(this));
+    made.push(...drawing.underlay.marks(this), ...draft.marks(this));
+    if (drawing.wrongPlace) made.push(this.crossAt(drawing.wrongPlace, "wrong"));
     this.above.replaceChildren(...made);
     drawing.showMark();
+    drawing.showEmpty();
+  }
+
+  /** A small cross at a place. */
+  crossAt(place, kind) {
+    const [x, y] = this.toSheet(place);
+    return svg("path", { class: `spot ${kind}`, d: `M${x - 6} ${y - 6}l12 12m0 -12l-12 12` });
   }
 
   /** The goals of the selected element, and the goal of all. */

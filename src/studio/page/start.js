@@ -3,6 +3,8 @@
 class Studio {
   static MODES = { start: "starting", draw: "drawing", play: "playing" };
   static EMPTY = "empty";
+  /** The types of files that are images to trace; a plan by CAD can be `image/vnd.dxf`. */
+  static IMAGE = /^image\/(png|jpeg|gif|webp|avif)$/;
   /** Where the number of the run that this tab began is kept. */
   static BEGUN = "studio.begun";
 
@@ -16,13 +18,13 @@ class Studio {
     this.drawing = new Drawing(this);
     for (const mode of ["start", "draw"]) on(`mode-${mode}`, () => this.open(mode));
     on("mode-play", () => this.playDrawn());
-    on("start-empty", () => this.example(Studio.EMPTY));
-    on("new-drawing", () => this.example(Studio.EMPTY));
+    on("start-empty", () => this.drawEmpty());
+    on("new-drawing", () => this.drawEmpty());
     on("continue", () => this.open("draw"));
     for (const id of ["start-import", "open-file"]) $(id).addEventListener("click", () => $("file").click());
     $("file").addEventListener("change", event => {
       const files = [...event.target.files];
-      if (files.length) this.attempt(() => this.import(files));
+      if (files.length) this.attempt(() => this.openFiles(files));
       event.target.value = "";
     });
     $("name").addEventListener("change", event => this.rename(event.target.value.trim()));
@@ -94,12 +96,13 @@ class Studio {
     // Behind the number of the run, the address may have more, such as a person.
     const isThere = location.hash === hash || location.hash.startsWith(`${hash}&`);
     if (isKept && !isThere) history.pushState(null, "", hash);
+    this.placeMessage();
     if (mode === "draw") this.drawing.sheet.resize();
     if (mode === "play") this.player.update();
     this.say("");
     this.showName();
     if (mode === "start") return this.attempt(() => this.showStart());
-    return mode === "draw" && !this.hasDrawing ? this.attempt(() => this.example(Studio.EMPTY)) : null;
+    return mode === "draw" && !this.hasDrawing ? this.attempt(() => this.drawEmpty()) : null;
   }
 
   /* The start page. */
@@ -176,9 +179,12 @@ class Studio {
     await this.play(document);
   }
 
-  /** Draws an example. */
-  async example(name) {
-    const { document } = await ask(`example?name=${encodeURIComponent(name)}`);
+  /** Draws an empty floor, under a name that no drawing and no run has. */
+  async drawEmpty() {
+    const [{ document }, { drawings, runs }] = await Promise.all([ask(`example?name=${Studio.EMPTY}`), ask("start")]);
+    const taken = new Set([this.document, ...drawings, ...runs].map(({ name }) => name));
+    const { name } = document;
+    for (let k = 2; taken.has(document.name); k++) document.name = `${name} ${k}`;
     this.drawing.underlay.remove();
     this.edit(document);
   }
@@ -191,11 +197,14 @@ class Studio {
     this.drawing.open(structuredClone(document), kept);
   }
 
-  /** Draws a document. */
+  /** Draws a document; of the run that is played, as it was given. */
   edit(document) {
+    const { run } = this.player ?? {}, done = this.mode === "play" && document === run?.document ? run.state.done : 0;
     this.take(document);
     this.open("draw");
     this.drawing.sheet.fit();
+    const changes = done === 1 ? "1 change" : `${done} changes`;
+    if (done) this.say(`The drawing is as it was before ${changes} made while it was played; Save in Play keeps them.`);
   }
 
   /** Plays a document in a new run; throws if the program refuses it. */
@@ -244,6 +253,15 @@ class Studio {
 
   /* Files. */
 
+  /** Opens files: an image lies beneath the drawing, to be traced. */
+  async openFiles(files) {
+    const image = files.find(({ type }) => Studio.IMAGE.test(type)), others = files.filter(file => file !== image);
+    if (others.length) await this.import(others);
+    if (!image) return;
+    if (this.mode !== "draw") await this.open("draw");
+    this.drawing.underlay.open(image);
+  }
+
   /** Opens a floor plan, or a scenario with the files that it names. */
   async import(files) {
     const names = files.map(({ name }) => name).join(", "), headers = { "Content-Type": "application/octet-stream" };
@@ -253,7 +271,7 @@ class Studio {
     const { document, notes } = await answer.json();
     this.drawing.underlay.remove();
     this.edit(document);
-    this.say(`${[`Opened ${names}`, ...notes].join(". ")}.`);
+    this.say(`${[`Opened ${names}`, ...notes.map(note => this.drawing.named(note))].join(". ")}.`);
   }
 
   /** Files that are dropped anywhere are opened. */
@@ -269,10 +287,8 @@ class Studio {
     addEventListener("drop", event => {
       event.preventDefault();
       body.classList.remove("drops");
-      const files = [...event.dataTransfer.files], [file] = files;
-      if (!file) return;
-      if (/^image\//.test(file.type) && this.mode === "draw") this.drawing.underlay.open(file);
-      else this.attempt(() => this.import(files));
+      const files = [...event.dataTransfer.files];
+      if (files.length) this.attempt(() => this.openFiles(files));
     });
   }
 
@@ -308,7 +324,14 @@ class Studio {
     return error instanceof TypeError ? `The program does not answer (${error.message}).` : error.message;
   }
 
-  /** Shows a message below the header, or none. */
+  /** Puts the message below the header, or onto the plan of the drawing, which would else move with it. */
+  placeMessage() {
+    const message = document.getElementById("message");
+    if (this.mode === "draw") document.getElementById("draw-plan").append(message);
+    else document.getElementById("head").after(message);
+  }
+
+  /** Shows a message, or none. */
   say(text, kind = "") {
     const message = document.getElementById("message");
     message.textContent = text;

@@ -426,9 +426,11 @@ class Page {
       if (width >= 1) bar.style.cssText = `background:${force.color};outline:1px solid #2a2f38;width:${width}px`;
       return row(force.name, `${force.size.toFixed(2)} m/s²`, bar);
     });
-    const title = forces.length ? [element("p", { textContent: "Accelerations" })] : [];
-    card.replaceChildren(head, element("table", {}, ...facts.map(fact => row(...fact))), ...title,
-      element("table", {}, ...forces));
+    card.replaceChildren(head, element("table", {}, ...facts.map(fact => row(...fact))));
+    if (!forces.length) return;
+    const scale = "Bars and arrows grow with the logarithm of the value.";
+    card.append(element("p", { textContent: "Accelerations" }), element("table", {}, ...forces),
+      element("p", { className: "soft", textContent: scale }));
   }
 
   /** The persons whose forces are recorded, to be followed. */

@@ -22,6 +22,8 @@ class Plan {
   static RIMMED = 4.5;
   static RIM = 0.8;
   static FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif";
+  /** The distance between the lines on floors behind exits, pixels. */
+  static HATCHED = 8;
   static GRAY = 0xffa29a96;
   /** What lies beside a chosen level, and the margin around it, meters. */
   static FADED = "rgba(252, 252, 249, 0.82)";
@@ -112,6 +114,7 @@ class Plan {
     if (!this.isStale) return;
     this.isStale = false;
     this.draw(this.ink, this.scene.below);
+    for (const floor of this.scene.behind ?? []) this.hatch(this.ink, floor);
     this.ground = new Uint32Array(
       this.ink.getImageData(0, 0, this.base.width, this.base.height).data.buffer);
     this.image = this.ink.createImageData(this.base.width, this.base.height);
@@ -158,6 +161,33 @@ class Plan {
     }
     const taken = [];
     for (const mark of marks) if (mark.text) this.name(pen, mark, taken);
+  }
+
+  /** Hatches the floor behind an exit or entrance, and says that nobody counts there, if there is room for it. */
+  hatch(pen, { name, area }) {
+    const corners = [];
+    for (let k = 0; k < area.length; k += 2) corners.push(this.toScreen([area[k], area[k + 1]]));
+    const [left, top] = [0, 1].map(axis => Math.min(...corners.map(corner => corner[axis])));
+    const [right, bottom] = [0, 1].map(axis => Math.max(...corners.map(corner => corner[axis])));
+    if (right < 0 || bottom < 0 || left > this.width || top > this.height) return;
+    pen.save();
+    pen.beginPath();
+    corners.forEach(corner => pen.lineTo(...corner));
+    pen.clip();
+    pen.beginPath();
+    for (let x = left + top - bottom; x < right; x += Plan.HATCHED) {
+      pen.moveTo(x, bottom);
+      pen.lineTo(x + bottom - top, top);
+    }
+    pen.setLineDash([]);
+    pen.lineWidth = 1;
+    pen.strokeStyle = "rgba(27, 36, 48, 0.12)";
+    pen.stroke();
+    pen.restore();
+    pen.font = Plan.FONT;
+    const wide = text => pen.measureText(text).width, room = bottom - top < 20 ? 0 : right - left - 8;
+    const text = [`behind ${name}: not counted`, "not counted"].find(text => wide(text) < room);
+    if (text) this.text(pen, text, (left + right - wide(text)) / 2, (top + bottom) / 2, "#7d8793");
   }
 
   /** Writes a name where it covers no other one. */
