@@ -121,6 +121,30 @@ fn pages_get_people_where_they_are() {
 }
 
 #[test]
+fn pages_know_the_floor_behind_the_exit() {
+    let studio = Studio::start(&[]);
+    let run = studio.begin(&room());
+    let scene = studio.ask(&run, &Value::Null)["scene"].clone();
+    let [behind] = &scene["behind"].as_array().unwrap()[..] else {
+        panic!("{}", scene["behind"]);
+    };
+    assert_eq!(behind["name"], "out");
+    let numbers: Vec<f64> = behind["area"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(Value::as_f64)
+        .collect();
+    let xs = numbers
+        .iter()
+        .step_by(2)
+        .map(|x| x + scene["origin"][0].as_f64().unwrap());
+    let [least, most] = [f64::min, f64::max].map(|of| xs.clone().reduce(of).unwrap());
+    // From the line on, at least as far as bodies walk on.
+    assert!((least - 12.0).abs() < 0.05 && most > 17.9, "{least} {most}");
+}
+
+#[test]
 fn a_run_that_is_set_back_takes_the_same_course() {
     let studio = Studio::start(&[]);
     let run = studio.begin(&room());
@@ -145,9 +169,51 @@ fn a_run_that_is_set_back_takes_the_same_course() {
     studio.control(&fork, &json!({"to": 4.0}));
     studio.wait(&fork, |state| state["seeks"] == false);
     assert_eq!(digest(&studio, &fork), later);
+    // It goes back to before it was made, too.
+    let early = there(0.5);
+    studio.control(&fork, &json!({"to": 0.5}));
+    studio.wait(&fork, |state| state["seeks"] == false);
+    assert_eq!(digest(&studio, &fork), early);
     // Before the beginning there is nothing.
     let refused = studio.post(&format!("{run}/control"), &json!({"to": -1}));
     assert_eq!(refused.status, 400);
+}
+
+#[test]
+fn flows_at_doors_are_the_same_after_going_back() {
+    let studio = Studio::start(&[]);
+    let run = studio.begin(&room());
+    let flows = |secs: f64| -> Vec<Value> {
+        studio.control(&run, &json!({"to": secs}));
+        let state = studio.wait(&run, |state| state["seeks"] == false);
+        let doors = state["doors"].as_array().unwrap();
+        let mut flows = doors.iter().map(|door| door["flow_per_s"].clone());
+        assert_eq!(flows.len(), 2);
+        let all: Vec<Value> = flows.by_ref().collect();
+        assert!(all.iter().any(|flow| flow.as_f64() > Some(0.0)), "{state}");
+        all
+    };
+    let first = flows(8.0);
+    flows(12.0);
+    assert_eq!(flows(8.0), first);
+}
+
+#[test]
+fn a_run_that_stops_shows_the_frame_in_which_it_stops() {
+    let studio = Studio::start(&[]);
+    let run = studio.begin(&room());
+    for secs in [0.5, 1.0, 1.5, 2.0, 2.5] {
+        studio.control(&run, &json!({"speed": null, "play": true}));
+        studio.wait(&run, |state| state["time"].as_f64() > Some(secs));
+        let state = studio.control(&run, &json!({"play": false}));
+        let frames = studio.frames(&run, 0, 0);
+        let times = frames.series["times"].as_array().unwrap();
+        let last = times.last().unwrap().as_f64().unwrap();
+        assert!(
+            (last - state["time"].as_f64().unwrap()).abs() < 1e-4,
+            "{last} {state}"
+        );
+    }
 }
 
 #[test]

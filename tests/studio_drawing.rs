@@ -117,6 +117,20 @@ fn drawings_are_checked_with_the_places_of_their_problems() {
 }
 
 #[test]
+fn a_door_that_is_closed_until_it_is_opened_by_hand_is_no_mistake() {
+    let studio = Studio::start(&[]);
+    let notes = |until: f64| {
+        let mut document = room();
+        document["doors"][0]["closed_secs"] = json!([[0, until]]);
+        let found = studio.ask("check", &document);
+        assert_eq!(found["problem"], Value::Null, "{found}");
+        found["notes"].to_string()
+    };
+    assert!(notes(1e6).contains("is closed for the whole run"));
+    assert!(!notes(1e7).contains("is closed for the whole run"));
+}
+
+#[test]
 fn its_examples_play_and_its_schema_is_that_of_the_program() {
     let studio = Studio::start(&[]);
     let start = studio.ask("start", &Value::Null);
@@ -183,6 +197,20 @@ fn plans_and_scenarios_of_others_are_opened() {
         );
     }
     assert_eq!(import("..", b"").status, 400);
+    // A wrong scenario is opened, to be mended; what is none is not.
+    let mut wrong = room();
+    wrong["crowds"][0]["number"] = json!(100_000);
+    let opened = import("wrong.json", wrong.to_string().as_bytes());
+    assert_eq!(opened.json(), json!({"document": wrong, "notes": []}));
+    let found = studio.ask("check", &opened.json()["document"]);
+    assert_eq!(found["problem"]["path"], "crowds[0]");
+    for other in ["{\"name\": \"package\"}", "[1, 2]", "7"] {
+        assert_eq!(
+            import("package.json", other.as_bytes()).status,
+            422,
+            "{other}"
+        );
+    }
 }
 
 #[test]

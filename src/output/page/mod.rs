@@ -206,6 +206,7 @@ impl PageOptions {
             "follows": self.follows,
             "groups": self.groups,
             "places": self.places,
+            "behind": plan::areas(&self.behind, origin),
             "terms": terms.map(|(name, color)| json!([name, hex(*color)])).collect::<Value>(),
             "series": series.map(|(plot, name, color)| json!([plot, name, hex(*color)])).collect::<Value>(),
         })

@@ -3,6 +3,7 @@
 use crate::recording::force_terms;
 use crate::scenery;
 use crate::series::{self, CROWD, Count};
+use engine::math::Vector;
 use engine::scene::{Group, Scene};
 use figures::colors::Rgb;
 
@@ -37,6 +38,8 @@ pub struct PageOptions {
     pub groups: Vec<[String; 3]>,
     /// The names of the places to which people walk.
     pub places: Vec<String>,
+    /// The floors behind exits and entrances, on which nobody counts: the name and the corners.
+    pub behind: Vec<(String, Vec<Vector>)>,
     /// Whether journeys have several stages, by which people can be colored.
     pub has_stages: bool,
     /// The names and colors of the terms of accelerations, the sum first; empty without forces.
@@ -89,6 +92,7 @@ impl PageOptions {
             places: places
                 .map(|place| scenery::named(place.kind.name(), &place.name))
                 .collect(),
+            behind: behind(scene),
             has_stages: scenery::has_stages(scene),
             terms: if has_forces {
                 force_terms(scene)
@@ -98,4 +102,33 @@ impl PageOptions {
             ..page
         }
     }
+}
+
+/// The floors behind exits and entrances, each with the name of the nearest line. None in a building, whose levels lie
+/// elsewhere on a page.
+fn behind(scene: &Scene) -> Vec<(String, Vec<Vector>)> {
+    if scene.levels.is_some() {
+        return Vec::new();
+    }
+    let places = scene.journeys.places.iter();
+    let exits = places.filter(|place| place.is_exit());
+    let exits = exits.filter_map(|place| Some((&place.name, place.line()?)));
+    let entrances = scene.entrances.iter().map(|one| (&one.name, one.line));
+    let lines: Vec<(&String, [Vector; 2])> = exits.chain(entrances).collect();
+    let away = |area: &[Vector], line: &[Vector; 2]| -> f64 {
+        let to = |end: &Vector| {
+            area.iter()
+                .map(|p| (p - end).norm())
+                .fold(f64::MAX, f64::min)
+        };
+        line.iter().map(to).sum()
+    };
+    let named = |area: &Vec<Vector>| {
+        let nearest = |a: &&(&String, [Vector; 2]), b: &&(&String, [Vector; 2])| {
+            away(area, &a.1).total_cmp(&away(area, &b.1))
+        };
+        let (name, _) = lines.iter().min_by(nearest)?;
+        Some(((*name).clone(), area.clone()))
+    };
+    scene.behind.iter().filter_map(named).collect()
 }

@@ -59,6 +59,17 @@ pub fn marks(marks: &[Mark], origin: Vector) -> Vec<Value> {
     marks.iter().filter_map(mark).collect()
 }
 
+/// Areas with their names.
+pub fn areas(areas: &[(String, Vec<Vector>)], origin: Vector) -> Value {
+    let area = |(name, corners): &(String, Vec<Vector>)| {
+        let places = corners
+            .iter()
+            .flat_map(|corner| <[f64; 2]>::from(corner - origin).map(millimeters));
+        json!({"name": name, "area": places.collect::<Vec<f64>>()})
+    };
+    areas.iter().map(area).collect()
+}
+
 /// The levels of a building, each with its name and two corners of its floor: `null` if there are not several.
 pub fn levels(levels: &[(&str, [Vector; 2])], origin: Vector) -> Value {
     if levels.len() < 2 {

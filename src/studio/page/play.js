@@ -161,9 +161,11 @@ class Player extends Page {
 
   async check() {
     if (this.refusesBack()) return;
+    const line = document.getElementById("digest");
+    line.textContent = "";
     const found = await this.attempt(() => ask(`runs/${this.run.id}/digest`));
-    const text = found ? `state_sha256 ${found.state_sha256} in frame ${found.frame}, ${shown(found.time)} s` : "";
-    document.getElementById("digest").textContent = text;
+    if (!found) return;
+    line.textContent = `state_sha256 ${found.state_sha256} in frame ${found.frame}, ${shown(found.time)} s`;
   }
 
   /** Saves what was played: its scenario, or a page, a recording, a report or a picture of it. */
@@ -259,6 +261,8 @@ class Player extends Page {
     this.showState();
     const now = performance.now(), { epoch } = this.run.known, isSetBack = epoch !== this.epoch;
     this.epoch = epoch;
+    // The same frame may now have another state.
+    if (isSetBack) document.getElementById("digest").textContent = "";
     if (isSetBack || now - this.listed >= Player.LISTING || !this.run.state.playing) {
       this.listed = now;
       this.showTime();
