@@ -159,6 +159,14 @@ fn its_examples_play_and_its_schema_is_that_of_the_program() {
     let document = given.ask("start", &Value::Null)["given"].clone();
     assert_eq!(document["name"], "office");
     assert!(document["walkable_area"].is_array());
+    // A wrong one, too: it is mended in the page.
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wrong.json");
+    let mut wrong = room();
+    wrong["crowds"][0]["number"] = json!(100_000);
+    std::fs::write(&file, wrong.to_string()).unwrap();
+    let given = Studio::start(&[file.to_str().unwrap()]);
+    assert_eq!(given.ask("start", &Value::Null)["given"], wrong);
 }
 
 #[test]

@@ -125,6 +125,20 @@ pub fn whole(source: &Source) -> Result<(Value, Vec<String>), Refusal> {
     Ok((scenario.document, scenario.notes))
 }
 
+/// The document of a scenario or a floor plan of the command line; of a wrong scenario that can be mended, too.
+///
+/// # Errors
+/// It cannot be read.
+pub fn given(source: &Source) -> Result<Value, Refusal> {
+    match whole(source) {
+        Ok((document, _)) => Ok(document),
+        Err(refusal) => {
+            let text = source.text().map(|(text, _)| text).unwrap_or_default();
+            mendable(text.as_bytes()).ok_or(refusal)
+        }
+    }
+}
+
 /// The document of the files that a page has opened: a floor plan, or a scenario with the files that it names.
 ///
 /// # Errors

@@ -76,7 +76,7 @@ impl Server {
     /// Starts the server.
     ///
     /// # Errors
-    /// The scenario is wrong, no viewer answers, or the port is taken.
+    /// The scenario cannot be read, no viewer answers, or the port is taken.
     pub fn start(studio: Studio) -> Result<Self, ServerError> {
         let given = studio.scenario.as_ref().map(given).transpose()?;
         let viewer = studio.viewer.as_ref().map(Viewer::reached);
@@ -140,9 +140,8 @@ impl Drop for Server {
 
 /// The document of the scenario on the command line.
 fn given(source: &Source) -> Result<Value, ServerError> {
-    let whole = rayon::scope(|_| drawing::whole(source));
-    let (document, _) = whole.map_err(|refusal| ServerError::Scenario(refusal.message))?;
-    Ok(document)
+    let document = rayon::scope(|_| drawing::given(source));
+    document.map_err(|refusal| ServerError::Scenario(refusal.message))
 }
 
 /// Lets those requests in that may come in.

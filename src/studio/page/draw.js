@@ -399,15 +399,17 @@ class Drawing {
     mark.style.top = `${Math.max(Math.min(above > 6 ? above : bottom + 8, lowest), 6)}px`;
   }
 
-  /** Plays the drawing, or leads to its problem. */
-  async play() {
+  /** Plays the drawing, at once or stopped in its first frame, or leads to its problem; whether it can be played. */
+  async play(isPlaying = true) {
     try {
-      await this.studio.play(this.document);
+      await this.studio.play(this.document, isPlaying);
+      return true;
     } catch (error) {
       if (this.studio.mode !== "draw") this.studio.open("draw");
       const problem = { path: error.path ?? "", reason: error.reason, message: this.studio.words(error) };
       this.showFound({ problem, notes: [] });
       this.showProblem();
+      return false;
     }
   }
 

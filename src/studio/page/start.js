@@ -52,8 +52,7 @@ class Studio {
     const { given } = await ask("start");
     if (given && !location.hash) {
       this.take(given);
-      await this.play(given, false);
-      this.say("Press ▶ or the space bar to play.");
+      if (await this.drawing.play(false)) this.say("Press ▶ or the space bar to play.");
     } else await this.follow();
     document.body.dataset.state = "ready";
   }
