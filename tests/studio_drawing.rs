@@ -212,7 +212,7 @@ fn plans_and_scenarios_of_others_are_opened() {
     assert_eq!(opened.json(), json!({"document": wrong, "notes": []}));
     let found = studio.ask("check", &opened.json()["document"]);
     assert_eq!(found["problem"]["path"], "crowds[0]");
-    for other in ["{\"name\": \"package\"}", "[1, 2]", "7"] {
+    for other in ["{\"private\": true}", "[1, 2]", "7"] {
         assert_eq!(
             import("package.json", other.as_bytes()).status,
             422,

@@ -67,7 +67,10 @@ pub fn openings(walkable: &[Area], doors: &[Door]) -> Vec<Opening> {
             is_floor(p) || others.any(|other| other.widened(widens).contains(p))
         };
         let wide = WIDENS.into_iter().map(|widens| opening.widened(widens));
-        let mut free = wide.filter(|wide| !wide.places().any(|p| is_taken(p, wide.widens)));
+        let ends_at_floor = |wide: &Opening| !wide.is_next_door() && wide.across(1.0).any(is_floor);
+        let mut free = wide.filter(|wide| {
+            !wide.places().any(|p| is_taken(p, wide.widens)) && !ends_at_floor(wide)
+        });
         free.next().unwrap_or_else(|| opening.apart(&is_floor))
     };
     openings.iter().map(widest).collect()
@@ -179,20 +182,18 @@ impl Opening {
         a + (b - a) * across + out * step
     }
 
-    /// Places all over the widened part, some decimeters apart.
+    /// Places all over it before its end, some decimeters apart.
     fn places(&self) -> impl Iterator<Item = Vector> {
         const STEPS: u32 = 24;
-        let part = |k: u32| f64::from(k) / f64::from(STEPS);
-        // The room next door begins at its end.
-        let last = if self.is_next_door() {
-            STEPS - 1
-        } else {
-            STEPS
-        };
-        (1..=last).flat_map(move |k| {
-            let step = self.depth * part(k);
-            (0..=STEPS).map(move |l| self.place(step, part(l)))
-        })
+        let parts = (1..STEPS).map(|k| f64::from(k) / f64::from(STEPS));
+        parts.flat_map(|part| self.across(part))
+    }
+
+    /// Places on the line across it at a part of its depth.
+    fn across(&self, part: f64) -> impl Iterator<Item = Vector> {
+        const STEPS: u32 = 24;
+        let step = self.depth * part;
+        (0..=STEPS).map(move |k| self.place(step, f64::from(k) / f64::from(STEPS)))
     }
 
     /// Whether it leads to the room behind a wall.
