@@ -155,11 +155,17 @@ def keeps_drawings(studio: Studio) -> None:
     studio.js("studio.open('start')")
     link = lambda: next((one for one in driver.find_elements(By.CSS_SELECTOR, "#drawings li")
                          if one.text.startswith("my own room")), None)
-    found = studio.until(link)
-    assert "1 element, changed less than a minute ago" in found.text, found.text
+    said = studio.until(lambda: (found := link()) and found.text)
+    assert "1 element, changed less than a minute ago" in said, said
     studio.picture("start-again")
-    found = studio.until(link)
-    found.find_element(By.CSS_SELECTOR, "button.link").click()
+
+    def goes_on() -> bool:
+        found = link()
+        if found:
+            found.find_element(By.CSS_SELECTOR, "button.link").click()
+        return bool(found)
+
+    studio.until(goes_on)
     studio.until(lambda: studio.js("return studio.mode") == "draw")
     assert studio.js("return studio.document") == drawn
     # What was drawn here before is not lost either, and nothing is listed twice.

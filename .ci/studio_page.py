@@ -10,6 +10,7 @@ from typing import Any
 
 from browser import messages, picture, requested, resize
 from selenium import webdriver
+from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
@@ -34,7 +35,10 @@ class Studio:
         return self.driver.execute_script(script, *values)
 
     def until(self, is_there: Callable[[], Any], secs: float = 60) -> Any:
-        return WebDriverWait(self.driver, secs, poll_frequency=0.05).until(lambda _: is_there())
+        # Lists are made again while they are read.
+        ignored = [StaleElementReferenceException]
+        wait = WebDriverWait(self.driver, secs, poll_frequency=0.05, ignored_exceptions=ignored)
+        return wait.until(lambda _: is_there())
 
     def find(self, selector: str) -> Any:
         return self.driver.find_element(By.CSS_SELECTOR, selector)
