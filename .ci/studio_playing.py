@@ -44,7 +44,7 @@ def keeps_the_plan_of_a_run_still(studio: Studio) -> None:
         studio.digest()
         is_still("digest")
         for line in ["message", "hint", "said", "event", "going", "digest"]:
-            fill = "document.getElementById(arguments[0]).textContent = 'so many words '.repeat(arguments[1])"
+            fill = "document.getElementById(arguments[0]).textContent = 'a long text '.repeat(arguments[1])"
             studio.js(fill, line, 40)
             is_still(line)
             studio.js(fill, line, 0)

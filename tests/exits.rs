@@ -277,7 +277,7 @@ proptest! {
     }
 }
 
-/// A room around a corner, whose wall begins at the end of an exit: nobody goes through it to the exit from behind.
+/// A room around a corner, whose wall begins at the end of an exit: no agent walks through this wall to the exit.
 #[test]
 fn people_beside_the_floor_behind_an_exit_go_around_the_corner() {
     let leg = json!({

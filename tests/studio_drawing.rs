@@ -253,7 +253,12 @@ fn a_scenario_is_opened_with_the_files_that_it_names() {
     let inner = inner.replace("\"office.geojson\"", "\"plans/floor/office.geojson\"");
     let opened = import(&[both[0], ("office.json", inner.as_bytes())]);
     assert_eq!(opened.json()["document"], whole["document"]);
-    // Alone, twice, with a stranger, and with wrong lengths.
+    // In UTF-16, as editors of Windows write it.
+    let letters = format!("\u{feff}{}", String::from_utf8_lossy(&scenario));
+    let utf16: Vec<u8> = letters.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let opened = import(&[both[0], ("office.json", &utf16)]);
+    assert_eq!(opened.json()["document"], whole["document"]);
+    // Alone, twice, with a file that it does not name, and with wrong lengths.
     let said = |reply: crate::common::studio::Reply, status: u16| {
         assert_eq!(reply.status, status);
         reply.json()["error"]["message"]
@@ -271,6 +276,8 @@ fn a_scenario_is_opened_with_the_files_that_it_names() {
         400,
     );
     assert!(other.contains("names no file hall.wkt"), "{other}");
+    let twice = said(import(&[both[0], both[0], both[1]]), 400);
+    assert!(twice.contains("office.geojson is given twice"), "{twice}");
     let outside = inner.replace("plans/floor/", "../");
     let outside = said(import(&[both[0], ("office.json", outside.as_bytes())]), 400);
     assert!(

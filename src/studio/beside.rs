@@ -63,6 +63,7 @@ impl Beside {
             }
         };
         recorder.log(simulation, ms)?;
+        recorder.check_viewer()?;
         self.frame = Some(clock.frame());
         Ok(())
     }

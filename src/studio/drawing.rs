@@ -4,7 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use runs::case::Source;
 use scenario::floor_plan::is_plan;
-use scenario::{Draft, Scenario, begun, built_in};
+use scenario::{Draft, Scenario, begun, built_in, read_text};
 use serde_json::{Value, json};
 
 use crate::answer::Refusal;
@@ -69,7 +69,8 @@ impl Example {
         let text = |&file: &&'static str| {
             let path = Path::new(file);
             let text = built_in(path).ok_or_else(|| Refusal::failed("an example is missing"));
-            text.map(|text| (path, text.as_bytes()))
+            let name = path.file_name().unwrap_or_default();
+            text.map(|text| (PathBuf::from(name), text.as_bytes()))
         };
         let texts = self.files.iter().map(text);
         match texts.collect::<Result<Vec<_>, _>>()?.as_slice() {
@@ -82,24 +83,32 @@ impl Example {
 }
 
 /// The document of the first of some files, which may name the others, and the notes on it.
-fn read(files: &[(&Path, &[u8])]) -> Result<(Value, Vec<String>), Refusal> {
+fn read(files: &[(PathBuf, &[u8])]) -> Result<(Value, Vec<String>), Refusal> {
+    let [(name, content), others @ ..] = files else {
+        return Err(Refusal::wrong("name: give the name of the file"));
+    };
     let folder = tempfile::tempdir().map_err(Refusal::failed)?;
-    let mut paths = Vec::new();
-    for (name, content) in files {
-        let path = folder.path().join(name);
-        let written = std::fs::create_dir_all(path.parent().unwrap_or(folder.path()))
-            .and_then(|()| std::fs::write(&path, content));
-        written.map_err(Refusal::failed)?;
-        paths.push(path);
+    let first = folder.path().join(name);
+    std::fs::write(&first, content).map_err(Refusal::failed)?;
+    let text = read_text(&first).unwrap_or_default();
+    let document = serde_json::from_str(&text).unwrap_or_default();
+    for (other, content) in others {
+        let place = place_in(&document, other).ok_or_else(|| {
+            Refusal::wrong(format!(
+                "{} names no file {}; open one plan, or one scenario with the files that it names",
+                name.display(),
+                other.display()
+            ))
+        })?;
+        write_new(&folder.path().join(place), content)?;
     }
-    let place = format!("{}/", folder.path().display());
-    let plain = |text: String| match text.replace(&place, "") {
+    let inside = format!("{}/", folder.path().display());
+    let plain = |text: String| match text.replace(&inside, "") {
         text if text.contains("cannot be read: No such file") => {
             format!("{text}: it is another file; open it together with the scenario")
         }
         text => text,
     };
-    let first = paths.swap_remove(0);
     let (document, notes) = whole(&Source::at(first)).map_err(|refusal| Refusal {
         reason: plain(refusal.reason),
         message: plain(refusal.message),
@@ -108,105 +117,82 @@ fn read(files: &[(&Path, &[u8])]) -> Result<(Value, Vec<String>), Refusal> {
     Ok((document, notes.into_iter().map(plain).collect()))
 }
 
+/// The path by which a scenario names a file, within its own folder.
+fn place_in(document: &Value, name: &Path) -> Option<PathBuf> {
+    let is_inside = |file: &PathBuf| {
+        let mut parts = file.components();
+        parts.all(|part| matches!(part, Component::Normal(_)))
+    };
+    files_named_in(document)
+        .into_iter()
+        .map(|(_, file)| PathBuf::from(file))
+        .filter(is_inside)
+        .find(|file| file.file_name() == name.file_name())
+}
+
+/// Writes a file that is not there yet, with its folder.
+fn write_new(path: &Path, content: &[u8]) -> Result<(), Refusal> {
+    if path.exists() {
+        let name = path.file_name().unwrap_or_default().display();
+        return Err(Refusal::wrong(format!("{name} is given twice")));
+    }
+    let folder = path.parent().unwrap_or(path);
+    std::fs::create_dir_all(folder).map_err(Refusal::failed)?;
+    std::fs::write(path, content).map_err(Refusal::failed)
+}
+
 /// The document of a scenario, which needs no other file, and the notes on it. Of a floor plan, a scenario with the
-/// exits and crowds that it names.
+/// exits and crowds that it names. A wrong scenario that needs no other file is returned as it is: it is drawn with its
+/// problem, and can be mended.
 ///
 /// # Errors
 /// It cannot be read.
 pub fn whole(source: &Source) -> Result<(Value, Vec<String>), Refusal> {
     let (text, file) = source.text()?;
-    let mut draft = Draft::read(&text, &file, &[])?;
-    if let Source::File(path) = source
-        && is_plan(path)
-    {
-        draft = begun(path, &draft, &[])?;
-    }
-    let scenario = draft.scenario()?;
-    Ok((scenario.document, scenario.notes))
-}
-
-/// The document of a scenario or a floor plan of the command line; of a wrong scenario that can be mended, too.
-///
-/// # Errors
-/// It cannot be read.
-pub fn given(source: &Source) -> Result<Value, Refusal> {
-    match whole(source) {
-        Ok((document, _)) => Ok(document),
-        Err(refusal) => {
-            let text = source.text().map(|(text, _)| text).unwrap_or_default();
-            mendable(text.as_bytes()).ok_or(refusal)
+    let whole = || -> Result<(Value, Vec<String>), Refusal> {
+        let mut draft = Draft::read(&text, &file, &[])?;
+        if let Source::File(path) = source
+            && is_plan(path)
+        {
+            draft = begun(path, &draft, &[])?;
         }
-    }
+        let scenario = draft.scenario()?;
+        Ok((scenario.document, scenario.notes))
+    };
+    whole().or_else(|refusal| match mendable(&text) {
+        Some(document) => Ok((document, Vec::new())),
+        None => Err(refusal),
+    })
 }
 
-/// The document of the files that a page has opened: a floor plan, or a scenario with the files that it names.
-///
-/// # Errors
-/// It cannot be read, or one of the files does not belong to it. A scenario that needs no other file is opened with its
-/// problems.
-pub fn opened(files: &[(String, &[u8])]) -> Result<Value, Refusal> {
-    let named = |(name, content): &(String, &[u8])| -> Result<(PathBuf, Vec<u8>), Refusal> {
-        let last = Path::new(name).file_name();
-        let name = last.ok_or_else(|| Refusal::wrong("name: give the name of the file"))?;
-        Ok((name.into(), content.to_vec()))
-    };
-    let mut files: Vec<(PathBuf, Vec<u8>)> = files.iter().map(named).collect::<Result<_, _>>()?;
-    if files.len() > 1 {
-        files.sort_by_key(|(path, _)| is_plan(path));
-        place_named(&mut files)?;
-    }
-    let Some(stem) = files.first().and_then(|(path, _)| path.file_stem()) else {
-        return Err(Refusal::wrong("name: give the name of the file"));
-    };
-    let parts: Vec<(&Path, &[u8])> = files
-        .iter()
-        .map(|(path, bytes)| (&**path, &**bytes))
-        .collect();
-    let (mut document, notes) = match (read(&parts), parts.as_slice()) {
-        (Err(refusal), [(_, text)]) => (mendable(text).ok_or(refusal)?, Vec::new()),
-        (read, _) => read?,
-    };
-    if document.get("name").is_none() {
-        document["name"] = stem.to_string_lossy().into();
-    }
-    Ok(json!({"document": document, "notes": notes}))
-}
-
-/// The document of a wrong scenario, if it needs no other file: it is drawn with its problem, and can be mended.
-fn mendable(text: &[u8]) -> Option<Value> {
-    let document: Value = serde_json::from_slice(text).ok()?;
+/// The document of a wrong scenario that needs no other file.
+fn mendable(text: &str) -> Option<Value> {
+    // Text that is no JSON is refused with its own message.
+    let document: Value = serde_json::from_str(text).ok()?;
     let has = |key: &str| document[key].is_array();
     let is_scenario = has("walkable_area") || has("obstacles") || has("levels");
     (is_scenario && files_named_in(&document).is_empty()).then_some(document)
 }
 
-/// Gives the files after the first, a scenario, the paths by which it names them.
-fn place_named(files: &mut [(PathBuf, Vec<u8>)]) -> Result<(), Refusal> {
-    let [(scenario, text), others @ ..] = files else {
-        return Ok(());
-    };
-    let document = serde_json::from_slice(text).unwrap_or_default();
-    let inner: Vec<PathBuf> = files_named_in(&document)
-        .into_iter()
-        .map(|(_, file)| PathBuf::from(file))
-        .filter(|file| {
-            file.components()
-                .all(|part| matches!(part, Component::Normal(_)))
-        })
-        .collect();
-    for (path, _) in others {
-        let found = inner
-            .iter()
-            .find(|file| file.file_name() == path.file_name());
-        *path = found.cloned().ok_or_else(|| {
-            Refusal::wrong(format!(
-                "{} names no file {}; open one plan, or one scenario with the files that it names",
-                scenario.display(),
-                path.display()
-            ))
-        })?;
+/// The document of the files that a page has opened: a floor plan, or a scenario with the files that it names.
+///
+/// # Errors
+/// It cannot be read, or one of the files does not belong to it.
+pub fn opened(files: &[(String, &[u8])]) -> Result<Value, Refusal> {
+    let mut named: Vec<(PathBuf, &[u8])> = Vec::new();
+    for (name, content) in files {
+        let last = Path::new(name).file_name();
+        let name = last.ok_or_else(|| Refusal::wrong("name: give the name of the file"))?;
+        named.push((name.into(), content));
     }
-    Ok(())
+    // The scenario comes first.
+    named.sort_by_key(|(path, _)| is_plan(path));
+    let (mut document, notes) = read(&named)?;
+    if document.get("name").is_none() {
+        let stem = named.first().and_then(|(path, _)| path.file_stem());
+        document["name"] = stem.unwrap_or_default().to_string_lossy().into();
+    }
+    Ok(json!({"document": document, "notes": notes}))
 }
 
 /// A scenario from a document that needs no other file, if its run fits into `memory` bytes.

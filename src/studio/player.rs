@@ -112,6 +112,7 @@ impl Player {
             warnings: Vec::new(),
         };
         player.observe();
+        player.warn();
         player.show(false);
         player.tell();
         Ok(player)
@@ -165,6 +166,7 @@ impl Player {
             if clock.frame() >= target || self.target.is_none() {
                 self.target = None;
                 self.pace.begin(clock.time());
+                self.warn();
                 self.show(true);
             }
         } else if self.shown.elapsed().as_secs_f64() >= 1.0 / PICTURES || !self.pace.playing {

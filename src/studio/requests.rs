@@ -81,9 +81,9 @@ impl Answers {
                 }
                 Ok(Answer::json(&found))
             }
-            (false, ["drawings", key]) => Ok(Answer::json(
-                &json!({"document": self.drawings.get(key)?, "notes": []}),
-            )),
+            (false, ["drawings", key]) => {
+                Ok(Answer::json(&json!({"document": self.drawings.get(key)?})))
+            }
             (true, ["drawings", key, "forget"]) => {
                 self.drawings.forget(key)?;
                 Ok(Answer::json(&json!({})))

@@ -140,8 +140,9 @@ impl Drop for Server {
 
 /// The document of the scenario on the command line.
 fn given(source: &Source) -> Result<Value, ServerError> {
-    let document = rayon::scope(|_| drawing::given(source));
-    document.map_err(|refusal| ServerError::Scenario(refusal.message))
+    let whole = rayon::scope(|_| drawing::whole(source));
+    let (document, _) = whole.map_err(|refusal| ServerError::Scenario(refusal.message))?;
+    Ok(document)
 }
 
 /// Lets those requests in that may come in.

@@ -38,7 +38,7 @@ pub struct PageOptions {
     pub groups: Vec<[String; 3]>,
     /// The names of the places to which people walk.
     pub places: Vec<String>,
-    /// The floors behind exits and entrances, on which nobody counts: the name and the corners.
+    /// The floors behind exits and entrances, where agents are not counted: the name and the corners.
     pub behind: Vec<(String, Vec<Vector>)>,
     /// Whether journeys have several stages, by which people can be colored.
     pub has_stages: bool,

@@ -207,6 +207,14 @@ impl Recorder {
         self.session.note(vec![Line::info(at, text.to_owned())])
     }
 
+    /// Checks that the viewer, if there is one, still takes data. A run goes on without it.
+    ///
+    /// # Errors
+    /// It is gone, or took no data for 2 s.
+    pub fn check_viewer(&self) -> Result<(), RecordingError> {
+        self.session.check_viewer()
+    }
+
     /// Adds the results of the run, in words and as JSON.
     ///
     /// # Errors

@@ -94,6 +94,11 @@ impl Session {
         self.send(Item::Frame(Box::new(snapshot)))
     }
 
+    /// Checks that the viewer, if there is one, still takes data.
+    pub fn check_viewer(&self) -> Result<(), RecordingError> {
+        self.output.check_viewer()
+    }
+
     /// Adds lines to the log of events.
     pub fn note(&mut self, lines: Vec<Line>) -> Result<(), RecordingError> {
         self.send(Item::Lines(lines))

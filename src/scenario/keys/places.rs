@@ -23,7 +23,8 @@ pub struct Exit {
     pub name: String,
     /// Its ends. On the edge of the walkable area, the line opens the wall.
     pub line: [Point; 2],
-    /// Times between which agents cannot pass, seconds: a list of [from, until].
+    /// Times between which agents cannot pass, seconds: a list of [from, until]. Until 1e7: until an intervention opens
+    /// it.
     #[serde(default)]
     #[schemars(inner(inner(range(min = 0, max = LONGEST_TIME))))]
     pub closed_secs: Vec<[f64; 2]>,

@@ -6,7 +6,7 @@ class Drawing {
   /** The time after a change until the program checks the drawing, milliseconds. */
   static CHECKING = 300;
   static STORED = "studio.drawing";
-  /** The most bytes that a page which is closed can still send. */
+  /** The most characters that a page which is closed can still send. */
   static LAST = 60_000;
   /** Changes of the same thing within this time are one step of the history, milliseconds. */
   static JOINING = 1000;
@@ -323,8 +323,8 @@ class Drawing {
   /** Sends the last change, when the page is closed or another drawing is opened before it was checked. */
   leave() {
     const body = JSON.stringify(this.document);
-    if (!this.isChanged || this.checked === this.version || body.length > Drawing.LAST) return;
-    answerOf(this.checks, { method: "POST", body, keepalive: true }).catch(() => null);
+    if (!this.isChanged || this.checked === this.version) return;
+    answerOf(this.checks, { method: "POST", body, keepalive: body.length < Drawing.LAST }).catch(() => null);
   }
 
   showFound({ problem, notes, people }) {

@@ -163,7 +163,7 @@ class Plan {
     for (const mark of marks) if (mark.text) this.name(pen, mark, taken);
   }
 
-  /** Hatches the floor behind an exit or entrance, and says that nobody counts there, if there is room for it. */
+  /** Hatches the floor behind an exit or entrance, and says that agents are not counted there, if there is room. */
   hatch(pen, { name, area }) {
     const corners = [];
     for (let k = 0; k < area.length; k += 2) corners.push(this.toScreen([area[k], area[k + 1]]));

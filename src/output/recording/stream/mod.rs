@@ -127,6 +127,14 @@ impl Output {
         self.viewer.is_some()
     }
 
+    /// Checks that the viewer, if there is one, still takes data.
+    ///
+    /// # Errors
+    /// It is gone, or took no data for 2 s.
+    pub fn check_viewer(&self) -> Result<(), RecordingError> {
+        check_viewer(self.viewer.as_ref())
+    }
+
     /// Adds the destination to an error.
     pub fn checked<T, C: ToString>(&self, result: Result<T, C>) -> Result<T, RecordingError> {
         result.map_err(|cause| RecordingError::unwritten(self.file.as_deref(), &cause))
@@ -144,16 +152,24 @@ impl Output {
             return Err(RecordingError::unwritten(file, reason));
         }
         file.map_or(Ok(()), check_footer)?;
-        if let Some((address, failure)) = &self.viewer
-            && let Some(reason) = failure.get()
-        {
-            return Err(RecordingError::ViewerGone {
-                address: address.to_string(),
-                reason: reason.clone(),
-            });
-        }
-        Ok(())
+        check_viewer(self.viewer.as_ref())
     }
+}
+
+/// Checks that the viewer, if there is one, still takes data.
+///
+/// # Errors
+/// It is gone, or took no data for 2 s.
+fn check_viewer(viewer: Option<&(Address, Failure)>) -> Result<(), RecordingError> {
+    if let Some((address, failure)) = viewer
+        && let Some(reason) = failure.get()
+    {
+        return Err(RecordingError::ViewerGone {
+            address: address.to_string(),
+            reason: reason.clone(),
+        });
+    }
+    Ok(())
 }
 
 /// Checks that the environment variable `RERUN` does not switch recordings off. We could override it for our stream,
